@@ -429,6 +429,8 @@ std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& lis
         settings["offset"] = options.offset.value_or(auto_offset(judge.robot()));
     if (!options.z.is_unlimited()) settings["z"] = z_json(options.z);
     settings["layers"] = layers_json(options.layers);
+    if (const std::string rules = to_string(options.place); !rules.empty()) settings["place"] = rules;
+    if (!options.place.facing.empty()) settings["yaw"] = "facing " + options.place.facing;
     if (!options.reachable_name.empty()) settings["islands"] = options.reachable_name;
     Json out = json_head("sample", judge.map(), judge.robot(), std::move(settings));
     out["full"] = list.is_full;

@@ -6,6 +6,7 @@
 #include "messages.h"
 #include "numbers.h"
 #include "output.h"
+#include "place_args.h"
 #include "reach_args.h"
 #include "simulator_output.h"
 #include "spawn_advice.h"
@@ -28,6 +29,7 @@ struct SpawnArgs : QueryArgs {
     AvoidArgs avoid;
     GroundArgs ground;
     IslandArgs islands;  ///< only for `sample`
+    PlaceArgs places;    ///< only for `sample`
     std::string bounds, yaw = "0", format = "csv", out;
 
     bool is_thesis() const { return format == "thesis"; }
@@ -41,6 +43,9 @@ std::string upper_first(std::string text)
 
 /// Returns why fewer spawns than wanted were found, and what may give more. Here and below, `Options` is SearchOptions
 /// or SampleOptions.
+bool has_place_rules(const SearchOptions&) { return false; }
+bool has_place_rules(const SampleOptions& options) { return options.place.has_limits(); }
+
 template <class Options>
 std::string shortfall(const Options& options, const SpawnArgs& args, const SpawnList& list, const std::string& command)
 {
@@ -52,6 +57,7 @@ std::string shortfall(const Options& options, const SpawnArgs& args, const Spawn
                                              .min_distance = options.min_distance,
                                              .has_region = !options.area.is_everywhere(),
                                              .is_near_avoided = list.near_avoided > 0,
+                                             .has_place_rules = has_place_rules(options),
                                              .counts = list.counts});
     if (list.is_full && list.spawns.empty())
         return std::string("no spawn fits: it is proven that no pose is valid") +
@@ -59,7 +65,7 @@ std::string shortfall(const Options& options, const SpawnArgs& args, const Spawn
     if (list.is_full)
         return "only " + found + " of " + wanted + " spawns fit: it is proven that none can be added to these " +
                found + "; " + advice + " may give more";
-    if (command == "search" || args.is_settled())
+    if (command == "search" || args.is_settled() || has_place_rules(options))
         return only + "; " + advice + " may give " + (list.spawns.empty() ? "some" : "more");
     char area[32];
     std::snprintf(area, sizeof area, "%.3g", list.undecided_area);
@@ -131,11 +137,13 @@ void fill(Summary& summary, const Options& options, const SpawnList& list)
         (options.avoid.empty() ? "" : ", " + std::to_string(list.near_avoided) + " near avoided poses") +
         (options.area.is_everywhere() && list.off_area == 0
              ? ""
-             : ", " + std::to_string(list.off_area) + " " + off_area_words(options)));
+             : ", " + std::to_string(list.off_area) + " " + off_area_words(options)) +
+        (has_place_rules(options) ? ", " + std::to_string(list.off_rules) + " against the rules of place" : ""));
     summary.draws = {{"all", list.draws},
                      {"too_close", list.too_close},
                      {"near_avoided", list.near_avoided},
                      {"off_region", list.off_area}};
+    if (has_place_rules(options)) summary.draws.emplace_back("off_rules", list.off_rules);
 }
 
 /// The part of run_spawn() that differs between the commands.
@@ -240,6 +248,7 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
                           .area = read_area(args, args.area),
                           .threads = args.threads,
                           .progress = progress_bar(args, "sample")};
+    options.place = place_rules(args.places, command);
     set_stance(options, args, args.ground, command);
     if (const auto box = lone_box(args.area)) {  // as bounds, so that every draw is within the region
         options.bounds = *box;
@@ -252,11 +261,13 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
         notice_if_off_map(args, session.map, "--region", asked.bounds);
         notice_about_area(args, session.map, asked.area);
         notice_if_no_layer(args, session.map, asked.layers);
+        check_places(args, asked.place, session.map);
         notices_about_stance(args, command, session.robot);
         notice_about_heading(args, session.map, asked.heading);
         Settings own{{"Layers", args.ground.layers}};
         if (asked.offset) own.insert(own.begin(), {"Offset (m)", number(*asked.offset)});
         if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
+        if (const std::string rules = to_string(asked.place); !rules.empty()) own.emplace_back("Place", rules);
         if (!islands.selects_all()) own.emplace_back("Islands", words_of(args.islands));
         return own;
     };
@@ -332,10 +343,12 @@ void add_sample(CLI::App& app, ChosenCommand& chosen)
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Settled);
     add_islands(command, args->islands);
+    add_places(command, args->places);
     add_spawn_groups(command, *args);
     command.footer(
         "Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random\n"
-        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --island largest --reach-step 0.3");
+        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --island largest --reach-step 0.3\n"
+        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --near 'cube*' 0.5:1 --facing 'cube*'");
     set_work(command, args, chosen, run_sample);
 }
 
