@@ -335,8 +335,10 @@ TEST_CASE("spawns keep a distance from a point, are in its view, or hidden from 
         const Point way = spawn.position.head<2>() - point.head<2>();
         return way.y() > 0 && std::abs(way.x()) < way.y() / (shelf_low.y() - point.y());
     };
-    const SpawnList seen = sample(judge, options_with({.in_view_of = {point}, .sensor_height = 0.5}, 2000)),
-                    hidden = sample(judge, options_with({.hidden_from = {point}, .sensor_height = 0.5}, 2000));
+    SampleOptions in_view = options_with({.in_view_of = {point}}, 2000),
+                  out_of_view = options_with({.hidden_from = {point}}, 2000);
+    in_view.measures.sensor_height = out_of_view.measures.sensor_height = 0.5;
+    const SpawnList seen = sample(judge, in_view), hidden = sample(judge, out_of_view);
     REQUIRE(seen.spawns.size() == 2000);
     REQUIRE(hidden.spawns.size() == 2000);
     for (const Spawn& spawn : hidden.spawns) CHECK((is_behind(spawn) && spawn.position.y() > shelf_high.y()));
@@ -344,7 +346,9 @@ TEST_CASE("spawns keep a distance from a point, are in its view, or hidden from 
     CHECK(std::any_of(seen.spawns.begin(), seen.spawns.end(), [](const Spawn& s) { return s.position.y() > 1.2; }));
 
     // A robot whose sensor is above the shelf is visible everywhere: nothing is proven, but no spawn is found.
-    CHECK(sample(judge, options_with({.hidden_from = {{1, -2, 2}}, .sensor_height = 1.8})).spawns.empty());
+    out_of_view.place.hidden_from = {{1, -2, 2}};
+    out_of_view.measures.sensor_height = 1.8;
+    CHECK(sample(judge, out_of_view).spawns.empty());
 
     const SpawnList ring = sample(judge, options_with({.distance_to = {{-2, -1, 1, 1.1}, {-2, 0, 0, 1}}}));
     REQUIRE(ring.spawns.size() == 300);
@@ -406,7 +410,7 @@ TEST_CASE("wrong rules of place are refused")
     CHECK_THAT(complaint("--facing 'cube*' --yaw 1"), Contains("--facing and --yaw both choose the yaw"));
     CHECK_THAT(complaint("--in-view-of 1,2"), Contains("needs x,y,z in m"));
     CHECK_THAT(complaint("--clearance 20"), Contains("--clearance is 20, needs 0 .. 10 m"));
-    CHECK_THAT(complaint("--sensor-height 1"), Contains("only for --in-view-of and --hidden-from"));
+    CHECK_THAT(complaint("--sensor-height 1"), Contains("only for --in-view-of, --hidden-from and view"));
     const ProgramRun run = arena("sample map -n 5" + husky_option +
                                  "--format json --near 'cube*' 0.5:1 --facing 'cube*'");
     CHECK(run.status == 0);

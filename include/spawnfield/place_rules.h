@@ -3,7 +3,6 @@
 #include <spawnfield/export.h>
 #include <spawnfield/geometry.h>
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,10 +30,8 @@ struct PlaceRules {
     std::vector<Near> near = {};
     std::vector<Distance> distance_to = {};
     /// Points from which the robot's sensor is visible, or is not visible. A line of sight is interrupted by terrain
-    /// and obstacles that it touches; water does not count. The sensor is `sensor_height` above the origin, along the
-    /// robot's z axis, m; no value: as high as the robot's highest point.
+    /// and obstacles that it touches; water does not count. The sensor is at PlaceMeasures::sensor_height.
     std::vector<Vec3> in_view_of = {}, hidden_from = {};
-    std::optional<double> sensor_height = {};
     /// Glob; if it is not empty, the robot's x axis points, seen from above, to the nearest point of the matching
     /// parts. It is the one nearest in 3D to the point half of the robot's height above the ground of the spawn. Must
     /// not be given together with a HeadingRule or a random yaw.

@@ -3,6 +3,7 @@
 #include <spawnfield/export.h>
 #include <spawnfield/heading_rule.h>
 #include <spawnfield/judge.h>
+#include <spawnfield/place_quantities.h>
 #include <spawnfield/place_rules.h>
 #include <spawnfield/region.h>
 
@@ -157,6 +158,9 @@ struct SpawnList {
     /// Draws outside the options' area. search() of settled robots: or whose ground is outside it, or beyond the
     /// heights of the box.
     std::uint64_t off_area = 0;
+    std::vector<PlaceColumn> columns = {};  ///< those of SampleOptions::measures
+    /// Draws that would be spawns without SampleOptions::measures.prefer; `counts` is without them.
+    std::uint64_t not_preferred = 0;
     std::uint64_t off_rules = 0;     ///< draws that do not comply with SampleOptions::place; `counts` is without them
     std::uint64_t near_avoided = 0;  ///< draws too near to a point of the options' `avoid`
     std::uint64_t too_close = 0;     ///< draws nearer than min_distance to an earlier one
@@ -230,10 +234,11 @@ struct SampleOptions {
     /// be given for settled robots.
     std::optional<double> offset = {};
     LayerChoice layers = {};
-    ZRange z = {};          ///< layers beyond these heights, m, or beyond the map's z limits are not ground
-    Bounds bounds = {};     ///< in x and y; empty: those of the map
-    Area area = {};         ///< the same as SearchOptions::area
-    PlaceRules place = {};  ///< all spawns comply with these rules
+    ZRange z = {};                ///< layers beyond these heights, m, or beyond the map's z limits are not ground
+    Bounds bounds = {};           ///< in x and y; empty: those of the map
+    Area area = {};               ///< the same as SearchOptions::area
+    PlaceRules place = {};        ///< all spawns comply with these rules
+    PlaceMeasures measures = {};  ///< what is measured of spawns, and which places are preferred
     std::vector<AvoidedPoints> avoid = {};  ///< the same as SearchOptions::avoid
     int threads = 0;                        ///< 0: all cores; results are the same for any number
     Progress progress = {};

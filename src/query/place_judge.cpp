@@ -28,8 +28,6 @@ void check_rules(const PlaceRules& rules)
     if (!(rules.clearance >= 0 && rules.clearance <= ClearanceMeter::most))
         throw ArgumentError("place rules", "clearance", rules.clearance,
                             "0 .. " + std::to_string(int(ClearanceMeter::most)) + " m");
-    if (rules.sensor_height && !std::isfinite(*rules.sensor_height))
-        throw ArgumentError("place rules", "sensor_height", *rules.sensor_height, "a finite number, m");
     for (const PlaceRules::Near& near : rules.near) check_range("near \"" + near.parts + "\"", near.low, near.high);
     for (const PlaceRules::Distance& to : rules.distance_to) {
         check_range("distance_to", to.low, to.high);
@@ -43,12 +41,13 @@ bool is_in_range(double value, double low, double high) { return value >= low &&
 
 }  // namespace
 
-PlaceJudge::PlaceJudge(const Geometry& geometry, const Robot& robot, const PlaceRules& rules)
+PlaceJudge::PlaceJudge(const Geometry& geometry, const Robot& robot, const PlaceRules& rules,
+                       const std::optional<double>& sensor_height)
     : geometry_(geometry), rules_(rules)
 {
     check_rules(rules);
     const Bounds box = robot.bounds();
-    sensor_height_ = rules.sensor_height.value_or(box.max.z());
+    sensor_height_ = sensor_height.value_or(box.max.z());
     half_height_ = (box.max.z() - box.min.z()) / 2;
     reach_ = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
     for (const RobotPart& part : robot.parts) bodies_.push_back(convex_of(part));

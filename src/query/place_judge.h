@@ -15,7 +15,8 @@ namespace spawnfield {
 class PlaceJudge {
 public:
     /// Throws ArgumentError for values beyond their limits and for globs that match no part.
-    PlaceJudge(const Geometry& geometry, const Robot& robot, const PlaceRules& rules);
+    PlaceJudge(const Geometry& geometry, const Robot& robot, const PlaceRules& rules,
+               const std::optional<double>& sensor_height);
 
     bool has_limits() const { return rules_.has_limits(); }
     bool has_facing() const { return facing_.has_value(); }

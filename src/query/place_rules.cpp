@@ -57,7 +57,6 @@ std::string to_string(const PlaceRules& rules)
         add("distance to " + number(to.x) + "," + number(to.y) + " " + range_text(to.low, to.high));
     for (const Vec3& point : rules.in_view_of) add("in view of " + point_text(point));
     for (const Vec3& point : rules.hidden_from) add("hidden from " + point_text(point));
-    if (rules.sensor_height) add("sensor height " + number(*rules.sensor_height) + " m");
     if (!rules.facing.empty()) add("facing " + rules.facing);
     return out;
 }

@@ -4,6 +4,7 @@
 #include "query/avoid_index.h"
 #include "query/cell_proofs.h"
 #include "query/place_cells.h"
+#include "query/place_meter.h"
 #include "query/spawning.h"
 
 #include <spawnfield/error.h>
@@ -102,6 +103,8 @@ private:
     std::vector<Cell> cells_;
 };
 
+Pose pose_of(const Spawn& spawn) { return {spawn.position, rotation_from_rpy(spawn.roll, spawn.pitch, spawn.yaw)}; }
+
 Bounds within(const Bounds& box, Bounds limits)
 {
     limits.min.array() -= touch_tolerance;
@@ -114,13 +117,15 @@ Bounds within(const Bounds& box, Bounds limits)
 /// are drawn with the same density, no matter how many lie above each other.
 class Sampler {
 public:
-    Sampler(const Judge& judge, const PlaceJudge& places, const SampleOptions& options, std::size_t slots)
-        : shared_(judge.impl()), places_(places), options_(options), offset_(*options.offset),
+    Sampler(const Judge& judge, const PlaceJudge& places, const PlaceMeter& meter, const SampleOptions& options,
+            std::size_t slots)
+        : shared_(judge.impl()), places_(places), meter_(meter), options_(options), offset_(*options.offset),
           ground_z_(overlap(shared_.map.z_limits, options.z)), area_(options.area),
           box_(overlap(chosen_bounds("sample", options.bounds, shared_.map.bounds, 2), options.area.bounds())),
           slots_(slots), avoided_(options.avoid, box_), taken_(options.min_distance)
     {
-        if (places.has_limits()) place_cells_.emplace(places, within(box_, shared_.map.bounds));
+        if (places.has_limits() || meter.has_preferences())
+            place_cells_.emplace(places, within(box_, shared_.map.bounds));
     }
 
     /// Returns false if a column had more layers than slots. Then `out` is not valid.
@@ -183,6 +188,7 @@ private:
                                   if (overfull_) return false;
                                   out.off_area += candidate.off_area;
                                   out.off_rules += candidate.off_rules;
+                                  out.not_preferred += candidate.not_preferred;
                                   if (candidate.on_ground && take(candidate, out)) failures = 0;
                                   return out.spawns.size() < options_.count && draws < most && go_on(draws, failures);
                               });
@@ -284,7 +290,7 @@ private:
         out.on_ground = true;
         out.on_double_ground = layer->is_double_ground && !is_settled_;
         if (places_.has_facing()) out.spawn.yaw = places_.facing_yaw({at.x(), at.y(), layer->height});
-        if (is_settled_) return settle(column, {at.x(), at.y(), layer->height}, from, out);
+        if (is_settled_) return with_preference(settle(column, {at.x(), at.y(), layer->height}, from, out), from);
         out.spawn.position = Vec3(at.x(), at.y(), layer->height + offset_);
         out.near_avoided = !avoided_.is_clear(out.spawn.position);
         if (out.near_avoided) return out;
@@ -293,9 +299,17 @@ private:
         judge.set_rotation(out.spawn.yaw);
         const Judgement judgement = judge.judge(column, out.spawn.position);
         out.set(judgement);
-        if (judgement.verdict != Verdict::Valid || !places_.has_limits()) return out;
-        out.off_rules = !places_.complies({out.spawn.position, rotation_from_rpy(0, 0, out.spawn.yaw)},
-                                          std::span(&judgement.ground->part, 1));
+        if (judgement.verdict != Verdict::Valid) return out;
+        out.off_rules = places_.has_limits() &&
+                        !places_.complies(pose_of(out.spawn), std::span(&judgement.ground->part, 1));
+        return with_preference(out, from);
+    }
+
+    /// Draws whether a candidate that would be a spawn is one, by the density that is preferred.
+    Candidate with_preference(Candidate out, Draw& from) const
+    {
+        if (!meter_.has_preferences() || out.verdict != Verdict::Valid || out.off_rules || !out.clear) return out;
+        out.not_preferred = !(from.unit() < meter_.preference(pose_of(out.spawn), out.rest.margin));
         return out;
     }
 
@@ -310,7 +324,7 @@ private:
 
     bool take(const Candidate& candidate, SpawnList& out)
     {
-        if (candidate.off_rules) {
+        if (candidate.off_rules || candidate.not_preferred) {
             out.exact_checks += candidate.exact_checks;
             return false;
         }
@@ -341,6 +355,7 @@ private:
 
     const Judge::Impl& shared_;
     const PlaceJudge& places_;
+    const PlaceMeter& meter_;
     const SampleOptions& options_;
     const double offset_;
     const bool is_settled_ = options_.stance == Stance::Settled;
@@ -356,6 +371,19 @@ private:
     std::atomic<bool> overfull_{false};
 };
 
+/// Measures the columns of a list of spawns.
+void measure_columns(const PlaceMeter& meter, const SampleOptions& options, SpawnList& out)
+{
+    for (const PlaceQuantity quantity : meter.columns()) {
+        std::vector<double> values(out.spawns.size());
+        parallel_for(values.size(), options.threads, {}, [&](std::size_t i) {
+            const SpawnRest rest = out.rests.empty() ? SpawnRest{} : out.rests[i];
+            values[i] = meter.measure(quantity, pose_of(out.spawns[i]), rest.tilt, rest.margin);
+        });
+        out.columns.push_back({quantity, std::move(values)});
+    }
+}
+
 }  // namespace
 
 SpawnList sample(const Judge& judge, const SampleOptions& wanted)
@@ -368,7 +396,8 @@ SpawnList sample(const Judge& judge, const SampleOptions& wanted)
         throw ArgumentError("sample",
                             "place.facing is given together with a heading rule or a random yaw, which also "
                             "choose the yaw; leave one of them out");
-    const PlaceJudge places(judge.map().geometry, judge.robot(), wanted.place);
+    const PlaceJudge places(judge.map().geometry, judge.robot(), wanted.place, wanted.measures.sensor_height);
+    const PlaceMeter meter(judge.map().geometry, judge.robot(), wanted.measures, wanted.stance == Stance::Settled);
     SampleOptions options = wanted;
     options.offset = wanted.offset.value_or(auto_offset(judge.robot()));
     if (options.stance == Stance::Settled)
@@ -380,7 +409,9 @@ SpawnList sample(const Judge& judge, const SampleOptions& wanted)
     // with one more slot.
     for (std::size_t slots = one ? 1 : std::size_t(std::max(1, judge.map().layers));; ++slots) {
         SpawnList out = empty_list(options);
-        if (Sampler(judge, places, options, slots).run(out)) return out;
+        if (!Sampler(judge, places, meter, options, slots).run(out)) continue;
+        measure_columns(meter, options, out);
+        return out;
     }
 }
 

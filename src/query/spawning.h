@@ -52,7 +52,8 @@ struct Candidate {
     bool on_ground = false;         ///< the draw gave a pose; only set by sample()
     bool on_double_ground = false;  ///< as counted in SpawnList; only set by sample()
     bool off_area = false;
-    bool off_rules = false;  ///< does not comply with place rules; only set by sample()
+    bool off_rules = false;      ///< does not comply with place rules; only set by sample()
+    bool not_preferred = false;  ///< only set by sample()
     bool near_avoided = false;
     bool clear = false;
     std::uint64_t exact_checks = 0;

@@ -51,6 +51,21 @@ PlaceRules::Distance parse_distance(const std::pair<std::string, std::string>& t
     return {values[0], values[1], range.low, range.high};
 }
 
+const std::string quantity_help = "clearance, head_room, tilt, margin, roughness, view";
+
+PlaceQuantity parse_quantity(const std::string& option, const std::string& name)
+{
+    for (const PlaceQuantity quantity : all_place_quantities)
+        if (name == to_string(quantity)) return quantity;
+    throw ArgumentError(option + " has \"" + name + "\", needs one of " + quantity_help);
+}
+
+/// Returns the texts between commas; none for an empty text.
+std::vector<std::string> words_between_commas(const std::string& text)
+{
+    return text.empty() ? std::vector<std::string>() : CLI::detail::split(text, ',');
+}
+
 }  // namespace
 
 void add_places(CLI::App& command, PlaceArgs& args)
@@ -77,6 +92,47 @@ void add_places(CLI::App& command, PlaceArgs& args)
     add("--hidden-from", args.hidden_from, "x,y,z in m: the opposite (repeatable)");
     command.add_option("--sensor-height", args.sensor_height,
                        "m above the robot's origin, of the sensor (default: that of the robot's highest point)");
+    command.add_option("--columns", args.columns,
+                       "Write columns with these quantities of each spawn, with commas between them: " + quantity_help);
+    command.add_option("--prefer", args.prefer,
+                       "QUANTITY=WEIGHT,...: more spawns where these quantities are large; the density is proportional "
+                       "to the product of clearance, head_room, margin or view to the power of their weights, for "
+                       "example clearance=1,margin=0.5");
+    command.add_option("--view-range", args.view_range, "m: how far a line of sight is free for view (default 10)");
+}
+
+PlaceMeasures place_measures(const PlaceArgs& args, const CLI::App& command)
+{
+    PlaceMeasures out;
+    for (const std::string& name : words_between_commas(args.columns))
+        out.columns.push_back(parse_quantity("--columns", name));
+    for (const std::string& text : words_between_commas(args.prefer)) {
+        const std::size_t equals = text.find('=');
+        if (equals == std::string::npos)
+            throw ArgumentError("--prefer has \"" + text + "\", needs QUANTITY=WEIGHT, for example clearance=1");
+        const std::vector<double> weights = parse_numbers("--prefer", text.substr(equals + 1));
+        out.prefer.push_back({parse_quantity("--prefer", text.substr(0, equals)), weights[0]});
+        if (!(weights[0] > 0)) throw bad_value("the weight of --prefer " + text, weights[0], "> 0");
+    }
+    if (command.count("--view-range") > 0) {
+        if (!measures_view(out))
+            throw ArgumentError("--view-range is only for --columns view and --prefer view=WEIGHT");
+        out.view_range = parse_positive("--view-range", args.view_range);
+    }
+    if (command.count("--sensor-height") > 0) {
+        if (!measures_view(out) && args.in_view_of.empty() && args.hidden_from.empty())
+            throw ArgumentError("--sensor-height is only for --in-view-of, --hidden-from and view; give one of them");
+        out.sensor_height = parse_finite("--sensor-height", args.sensor_height, "m");
+    }
+    return out;
+}
+
+std::string words_of(const PlaceMeasures& measures)
+{
+    std::string out;
+    for (const auto& [quantity, weight] : measures.prefer)
+        out += (out.empty() ? "" : ", ") + std::string(to_string(quantity)) + "=" + number(weight);
+    return out;
 }
 
 PlaceRules place_rules(const PlaceArgs& args, const CLI::App& command)
@@ -90,14 +146,6 @@ PlaceRules place_rules(const PlaceArgs& args, const CLI::App& command)
     for (const auto& texts : args.distance_to) out.distance_to.push_back(parse_distance(texts));
     for (const std::string& text : args.in_view_of) out.in_view_of.push_back(parse_point("--in-view-of", text));
     for (const std::string& text : args.hidden_from) out.hidden_from.push_back(parse_point("--hidden-from", text));
-    if (!args.sensor_height.empty()) {
-        const std::vector<double> values = parse_numbers("--sensor-height", args.sensor_height);
-        if (values.size() != 1)
-            throw ArgumentError("--sensor-height is \"" + args.sensor_height + "\", needs one number, m");
-        out.sensor_height = values[0];
-        if (out.in_view_of.empty() && out.hidden_from.empty())
-            throw ArgumentError("--sensor-height is only for --in-view-of and --hidden-from; give one of them");
-    }
     if (!out.facing.empty() && command.count("--yaw") > 0)
         throw ArgumentError("--facing and --yaw both choose the yaw; leave one of them out");
     return out;

@@ -44,7 +44,10 @@ std::string upper_first(std::string text)
 /// Returns why fewer spawns than wanted were found, and what may give more. Here and below, `Options` is SearchOptions
 /// or SampleOptions.
 bool has_place_rules(const SearchOptions&) { return false; }
-bool has_place_rules(const SampleOptions& options) { return options.place.has_limits(); }
+bool has_place_rules(const SampleOptions& options)
+{
+    return options.place.has_limits() || !options.measures.prefer.empty();
+}
 
 template <class Options>
 std::string shortfall(const Options& options, const SpawnArgs& args, const SpawnList& list, const std::string& command)
@@ -138,12 +141,15 @@ void fill(Summary& summary, const Options& options, const SpawnList& list)
         (options.area.is_everywhere() && list.off_area == 0
              ? ""
              : ", " + std::to_string(list.off_area) + " " + off_area_words(options)) +
-        (has_place_rules(options) ? ", " + std::to_string(list.off_rules) + " against the rules of place" : ""));
+        (has_place_rules(options) ? ", " + std::to_string(list.off_rules) + " against the rules of place" : "") +
+        (list.not_preferred > 0 ? ", " + std::to_string(list.not_preferred) + " not preferred" : ""));
     summary.draws = {{"all", list.draws},
                      {"too_close", list.too_close},
                      {"near_avoided", list.near_avoided},
                      {"off_region", list.off_area}};
-    if (has_place_rules(options)) summary.draws.emplace_back("off_rules", list.off_rules);
+    if (!has_place_rules(options)) return;
+    summary.draws.emplace_back("off_rules", list.off_rules);
+    summary.draws.emplace_back("not_preferred", list.not_preferred);
 }
 
 /// The part of run_spawn() that differs between the commands.
@@ -249,6 +255,7 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
                           .threads = args.threads,
                           .progress = progress_bar(args, "sample")};
     options.place = place_rules(args.places, command);
+    options.measures = place_measures(args.places, command);
     set_stance(options, args, args.ground, command);
     if (const auto box = lone_box(args.area)) {  // as bounds, so that every draw is within the region
         options.bounds = *box;
@@ -268,6 +275,7 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
         if (asked.offset) own.insert(own.begin(), {"Offset (m)", number(*asked.offset)});
         if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
         if (const std::string rules = to_string(asked.place); !rules.empty()) own.emplace_back("Place", rules);
+        if (!asked.measures.prefer.empty()) own.emplace_back("Prefer", words_of(asked.measures));
         if (!islands.selects_all()) own.emplace_back("Islands", words_of(args.islands));
         return own;
     };
