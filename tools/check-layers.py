@@ -20,6 +20,7 @@ OWNERS = {  # public headers that have no .cpp file of the same name
     "export": "base",
     "map": "map",
     "map_export": "export",
+    "place_quantities": "query",
     "query": "query",
     "reach": "reach",
     "settled_pose": "settle",

@@ -10,8 +10,8 @@ namespace spawnfield {
 /// A drivable graph that is kept in the folder of its map.
 struct KeptGraph {
     ReachGraph graph;
-    bool is_read = false;  ///< it was read from its file; false: it was built
-    std::string notice;    ///< why the file could not be used or written, with what to do; empty: nothing is wrong
+    bool is_read = false;     ///< it was read from its file; false: it was built
+    std::string notice = {};  ///< why the file could not be used or written, with what to do; empty: nothing is wrong
 };
 
 /// Returns ReachGraph(judge, options). If the folder of the judge's map has a file with this graph, it is read.

@@ -3,6 +3,8 @@
 #include <spawnfield/export.h>
 #include <spawnfield/heading_rule.h>
 #include <spawnfield/judge.h>
+#include <spawnfield/place_quantities.h>
+#include <spawnfield/place_rules.h>
 #include <spawnfield/region.h>
 
 #include <cmath>
@@ -156,13 +158,18 @@ struct SpawnList {
     /// Draws outside the options' area. search() of settled robots: or whose ground is outside it, or beyond the
     /// heights of the box.
     std::uint64_t off_area = 0;
+    std::vector<PlaceColumn> columns = {};  ///< those of SampleOptions::measures
+    /// Draws that would be spawns without SampleOptions::measures.prefer; `counts` is without them.
+    std::uint64_t not_preferred = 0;
+    std::uint64_t off_rules = 0;     ///< draws that do not comply with SampleOptions::place; `counts` is without them
     std::uint64_t near_avoided = 0;  ///< draws too near to a point of the options' `avoid`
     std::uint64_t too_close = 0;     ///< draws nearer than min_distance to an earlier one
     std::uint64_t exact_checks = 0;
     /// Only counted by sample(): judged positions on a layer that has another of the chosen layers at most
     /// double_ground above it, likely the same ground twice.
     std::uint64_t on_double_ground = 0;
-    /// Only set by sample(): there are fewer than `count` spawns, and it is proven that no other spawn fits.
+    /// Only set by sample(): there are fewer than `count` spawns, and it is proven that no other spawn fits. With place
+    /// rules, this is proven only if no place can comply with them.
     bool is_full = false;
     /// Only set by sample(), if there are fewer than `count` spawns without that proof: the horizontal area, m2, in
     /// which a spawn may still fit.
@@ -227,9 +234,11 @@ struct SampleOptions {
     /// be given for settled robots.
     std::optional<double> offset = {};
     LayerChoice layers = {};
-    ZRange z = {};       ///< layers beyond these heights, m, or beyond the map's z limits are not ground
-    Bounds bounds = {};  ///< in x and y; empty: those of the map
-    Area area = {};      ///< the same as SearchOptions::area
+    ZRange z = {};                ///< layers beyond these heights, m, or beyond the map's z limits are not ground
+    Bounds bounds = {};           ///< in x and y; empty: those of the map
+    Area area = {};               ///< the same as SearchOptions::area
+    PlaceRules place = {};        ///< all spawns comply with these rules
+    PlaceMeasures measures = {};  ///< what is measured of spawns, and which places are preferred
     std::vector<AvoidedPoints> avoid = {};  ///< the same as SearchOptions::avoid
     int threads = 0;                        ///< 0: all cores; results are the same for any number
     Progress progress = {};
@@ -245,7 +254,8 @@ struct SampleOptions {
 /// a damaged map. Sources: White, Cline, Egbert, Poisson disk point sets by hierarchical dart throwing, 2007; Ebeida et
 /// al., A simple algorithm for maximal Poisson-disk sampling in high dimensions, 2012.
 ///
-/// Of settled poses there are no such proofs yet: sampling ends after 5,000 draws in a row without a spawn.
+/// Of settled poses there are no such proofs yet: sampling ends after 5,000 draws in a row without a spawn. With place
+/// rules, draws are made only in cells in which the rules can hold, and sampling ends after 100,000 such draws.
 SPAWNFIELD_API SpawnList sample(const Judge& judge, const SampleOptions& options);
 
 }  // namespace spawnfield

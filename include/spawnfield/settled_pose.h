@@ -64,6 +64,7 @@ struct SettledPose {
     /// Only with StandLimits::drop: height above its rest from which the level robot falls onto it, m; as headroom.
     double free_fall = std::numeric_limits<double>::infinity();
     bool falls = false;                 ///< Unstable: it falls, at whatever tilt
+    bool off_rules = false;             ///< Unreachable: it only does not comply with PlaceRules
     bool slides = false;                ///< Unstable: it needs more friction than StandLimits::friction
     std::vector<RestContact> contacts;  ///< the corners of the support polygon are among them
     bool exact_check = false;           ///< whether an exact collision check was made

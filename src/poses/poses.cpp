@@ -154,6 +154,21 @@ void check_rests(const char* function, const SpawnList& list)
                             "as many as its spawns, because they are settled");
 }
 
+/// Returns the measured columns that the files of spawns do not have anyway.
+std::vector<PlaceColumn> own_columns(const SpawnList& list)
+{
+    const std::string length_name = list.stance == Stance::Settled ? free_length_column(list.heading) : "";
+    std::vector<PlaceColumn> out;
+    for (const PlaceColumn& column : list.columns) {
+        const std::string name = to_string(column.quantity);
+        if (column.values.size() != list.spawns.size())
+            throw ArgumentError("size of the column " + name + " is " + std::to_string(column.values.size()) +
+                                ", needs as many values as there are spawns");
+        if (name != "tilt" && name != "margin" && name != length_name) out.push_back(column);
+    }
+    return out;
+}
+
 /// Adds the poses to `out`, with the rests of settled spawns, and returns its text. `list` is nullptr for poses that
 /// are not spawns.
 std::string finished(Json out, const SpawnList* list, std::span<const RobotStart> robots)
@@ -161,6 +176,7 @@ std::string finished(Json out, const SpawnList* list, std::span<const RobotStart
     const bool has_rests = list != nullptr && list->stance == Stance::Settled;
     const std::string length_name = has_rests ? free_length_column(list->heading) : "";
     out["poses"] = Json::array();
+    const std::vector<PlaceColumn> columns = list == nullptr ? std::vector<PlaceColumn>() : own_columns(*list);
     for (std::size_t i = 0; i < robots.size(); ++i) {
         Json pose = pose_json(robots[i]);
         if (has_rests) {
@@ -168,6 +184,8 @@ std::string finished(Json out, const SpawnList* list, std::span<const RobotStart
             pose["margin"] = list->rests[i].margin;
         }
         if (!length_name.empty()) pose[length_name] = list->rests[i].free_length;
+        for (const PlaceColumn& column : columns)  // JSON has no NaN: null
+            pose[to_string(column.quantity)] = std::isnan(column.values[i]) ? Json() : Json(column.values[i]);
         out["poses"].push_back(std::move(pose));
     }
     return json_text(out, 2) + "\n";
@@ -403,6 +421,8 @@ std::string spawns_csv(const SpawnList& list, std::span<const std::string> names
     std::string text = names.empty() ? "x,y,z,roll,pitch,yaw" : "name,x,y,z,roll,pitch,yaw";
     if (is_settled) text += ",tilt,margin";
     if (!length_name.empty()) text += "," + length_name;
+    const std::vector<PlaceColumn> columns = own_columns(list);
+    for (const PlaceColumn& column : columns) (text += ',') += to_string(column.quantity);
     text += '\n';
     for (std::size_t i = 0; i < list.spawns.size(); ++i) {
         const Spawn& spawn = list.spawns[i];
@@ -414,6 +434,7 @@ std::string spawns_csv(const SpawnList& list, std::span<const std::string> names
             append_numbers(text, {list.rests[i].tilt, list.rests[i].margin});
         }
         if (!length_name.empty()) append_if_known(text, list.rests[i].free_length);
+        for (const PlaceColumn& column : columns) append_if_known(text, column.values[i]);
         text += '\n';
     }
     return text;
@@ -429,6 +450,11 @@ std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& lis
         settings["offset"] = options.offset.value_or(auto_offset(judge.robot()));
     if (!options.z.is_unlimited()) settings["z"] = z_json(options.z);
     settings["layers"] = layers_json(options.layers);
+    if (const std::string rules = to_string(options.place); !rules.empty()) settings["place"] = rules;
+    for (const auto& [quantity, weight] : options.measures.prefer) settings["prefer"][to_string(quantity)] = weight;
+    if (options.measures.sensor_height) settings["sensor_height"] = *options.measures.sensor_height;
+    if (measures_view(options.measures)) settings["view_range"] = options.measures.view_range;
+    if (!options.place.facing.empty()) settings["yaw"] = "facing " + options.place.facing;
     if (!options.reachable_name.empty()) settings["islands"] = options.reachable_name;
     Json out = json_head("sample", judge.map(), judge.robot(), std::move(settings));
     out["full"] = list.is_full;

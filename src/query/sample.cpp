@@ -3,6 +3,8 @@
 #include "query/area_index.h"
 #include "query/avoid_index.h"
 #include "query/cell_proofs.h"
+#include "query/place_cells.h"
+#include "query/place_meter.h"
 #include "query/spawning.h"
 
 #include <spawnfield/error.h>
@@ -19,6 +21,8 @@ namespace {
 // proven full.
 constexpr std::uint64_t blind_patience = 2000, blind_window = 1 << 17;
 constexpr std::uint64_t settled_patience = 5000;  // the same for settled poses, for which there are no proofs
+// The same with place rules. Few draws may comply with them, and draws that do not take little time.
+constexpr std::uint64_t place_patience = 100000;
 constexpr double least_share = 0.02;
 // Cells are not split as long as more than this share of a round of draws gives a spawn.
 constexpr double fair_share = 0.05;
@@ -99,6 +103,8 @@ private:
     std::vector<Cell> cells_;
 };
 
+Pose pose_of(const Spawn& spawn) { return {spawn.position, rotation_from_rpy(spawn.roll, spawn.pitch, spawn.yaw)}; }
+
 Bounds within(const Bounds& box, Bounds limits)
 {
     limits.min.array() -= touch_tolerance;
@@ -111,17 +117,21 @@ Bounds within(const Bounds& box, Bounds limits)
 /// are drawn with the same density, no matter how many lie above each other.
 class Sampler {
 public:
-    Sampler(const Judge& judge, const SampleOptions& options, std::size_t slots)
-        : shared_(judge.impl()), options_(options), offset_(*options.offset),
+    Sampler(const Judge& judge, const PlaceJudge& places, const PlaceMeter& meter, const SampleOptions& options,
+            std::size_t slots)
+        : shared_(judge.impl()), places_(places), meter_(meter), options_(options), offset_(*options.offset),
           ground_z_(overlap(shared_.map.z_limits, options.z)), area_(options.area),
           box_(overlap(chosen_bounds("sample", options.bounds, shared_.map.bounds, 2), options.area.bounds())),
           slots_(slots), avoided_(options.avoid, box_), taken_(options.min_distance)
     {
+        if (places.has_limits() || meter.has_preferences())
+            place_cells_.emplace(places, within(box_, shared_.map.bounds));
     }
 
     /// Returns false if a column had more layers than slots. Then `out` is not valid.
     bool run(SpawnList& out)
     {
+        if (place_cells_) return run_in_place_cells(out);
         const auto point = [&](Draw& from) {
             const double x = from.uniform(box_.min.x(), box_.max.x()), y = from.uniform(box_.min.y(), box_.max.y());
             return Vec2(x, y);
@@ -142,6 +152,18 @@ public:
     }
 
 private:
+    /// The same in the cells in which place rules can hold. There are no proofs that a cell is full.
+    bool run_in_place_cells(SpawnList& out)
+    {
+        out.is_full = place_cells_->is_empty();
+        if (out.is_full) return true;
+        draw(
+            out, std::numeric_limits<std::uint64_t>::max(), [&](Draw& from) { return place_cells_->draw(from); },
+            [](std::uint64_t, std::uint64_t failures) { return failures < place_patience; });
+        if (out.spawns.size() < options_.count) out.undecided_area = place_cells_->area();
+        return !overfull_;
+    }
+
     /// Makes at most `most` draws of points. Stops earlier when all spawns are found, or when go_on(draws, failures in
     /// a row) returns false. Returns how many spawns it added.
     template <class Point, class GoOn>
@@ -165,6 +187,8 @@ private:
                                   ++failures;
                                   if (overfull_) return false;
                                   out.off_area += candidate.off_area;
+                                  out.off_rules += candidate.off_rules;
+                                  out.not_preferred += candidate.not_preferred;
                                   if (candidate.on_ground && take(candidate, out)) failures = 0;
                                   return out.spawns.size() < options_.count && draws < most && go_on(draws, failures);
                               });
@@ -258,19 +282,34 @@ private:
         out.spawn.yaw = draw_yaw(options_, from);
         out.off_area = !area_.contains(at);
         if (out.off_area) return out;
+        out.off_rules = !places_.is_at_distances(at);
+        if (out.off_rules) return out;
         const Column& column = judge.column_at(at);
         const std::optional<ChosenLayer> layer = layer_in(std::size_t(slot), column, at);
         if (!layer) return out;
         out.on_ground = true;
         out.on_double_ground = layer->is_double_ground && !is_settled_;
-        if (is_settled_) return settle(column, {at.x(), at.y(), layer->height}, from, out);
+        if (places_.has_facing()) out.spawn.yaw = places_.facing_yaw({at.x(), at.y(), layer->height});
+        if (is_settled_) return with_preference(settle(column, {at.x(), at.y(), layer->height}, from, out), from);
         out.spawn.position = Vec3(at.x(), at.y(), layer->height + offset_);
         out.near_avoided = !avoided_.is_clear(out.spawn.position);
         if (out.near_avoided) return out;
         out.clear = taken_.before().is_clear(out.spawn.position);
         if (!out.clear) return out;
         judge.set_rotation(out.spawn.yaw);
-        out.set(judge.judge(column, out.spawn.position));
+        const Judgement judgement = judge.judge(column, out.spawn.position);
+        out.set(judgement);
+        if (judgement.verdict != Verdict::Valid) return out;
+        out.off_rules = places_.has_limits() &&
+                        !places_.complies(pose_of(out.spawn), std::span(&judgement.ground->part, 1));
+        return with_preference(out, from);
+    }
+
+    /// Draws whether a candidate that would be a spawn is one, by the density that is preferred.
+    Candidate with_preference(Candidate out, Draw& from) const
+    {
+        if (!meter_.has_preferences() || out.verdict != Verdict::Valid || out.off_rules || !out.clear) return out;
+        out.not_preferred = !(from.unit() < meter_.preference(pose_of(out.spawn), out.rest.margin));
         return out;
     }
 
@@ -285,6 +324,10 @@ private:
 
     bool take(const Candidate& candidate, SpawnList& out)
     {
+        if (candidate.off_rules || candidate.not_preferred) {
+            out.exact_checks += candidate.exact_checks;
+            return false;
+        }
         if (candidate.near_avoided) {
             ++out.near_avoided;
             return false;
@@ -302,21 +345,44 @@ private:
         return true;
     }
 
+    StandJudge stand_judge() const
+    {
+        if (!places_.has_limits()) return StandJudge(shared_, options_.is_reachable);
+        return StandJudge(shared_, options_.is_reachable, [this](const SettledPose& pose) {
+            return places_.complies(pose, shared_.options.stand.lift);
+        });
+    }
+
     const Judge::Impl& shared_;
+    const PlaceJudge& places_;
+    const PlaceMeter& meter_;
     const SampleOptions& options_;
     const double offset_;
     const bool is_settled_ = options_.stance == Stance::Settled;
-    /// Only for settled poses.
-    mutable PerThread<StandJudge> stand_judges_{[this] { return StandJudge(shared_, options_.is_reachable); }};
-    const ZRange ground_z_;  ///< layers beyond it are not ground
+    mutable PerThread<StandJudge> stand_judges_{[this] { return stand_judge(); }};  ///< only for settled poses
+    const ZRange ground_z_;                                                         ///< layers beyond it are not ground
     const AreaIndex area_;
     const Bounds box_;
+    std::optional<PlaceCells> place_cells_;  ///< only with place rules
     const std::size_t slots_;
     const AvoidIndex avoided_;
     TakenPoints taken_;
     std::uint64_t next_ = 0;  ///< number of the next draw
     std::atomic<bool> overfull_{false};
 };
+
+/// Measures the columns of a list of spawns.
+void measure_columns(const PlaceMeter& meter, const SampleOptions& options, SpawnList& out)
+{
+    for (const PlaceQuantity quantity : meter.columns()) {
+        std::vector<double> values(out.spawns.size());
+        parallel_for(values.size(), options.threads, {}, [&](std::size_t i) {
+            const SpawnRest rest = out.rests.empty() ? SpawnRest{} : out.rests[i];
+            values[i] = meter.measure(quantity, pose_of(out.spawns[i]), rest.tilt, rest.margin);
+        });
+        out.columns.push_back({quantity, std::move(values)});
+    }
+}
 
 }  // namespace
 
@@ -326,6 +392,12 @@ SpawnList sample(const Judge& judge, const SampleOptions& wanted)
     check_ground("sample", wanted.z, wanted.stance, wanted.offset);
     check_heading("sample", wanted.heading, wanted.stance);
     check_filter("sample", wanted.is_reachable, wanted.stance);
+    if (!wanted.place.facing.empty() && (wanted.heading || wanted.random_yaw))
+        throw ArgumentError("sample",
+                            "place.facing is given together with a heading rule or a random yaw, which also "
+                            "choose the yaw; leave one of them out");
+    const PlaceJudge places(judge.map().geometry, judge.robot(), wanted.place, wanted.measures.sensor_height);
+    const PlaceMeter meter(judge.map().geometry, judge.robot(), wanted.measures, wanted.stance == Stance::Settled);
     SampleOptions options = wanted;
     options.offset = wanted.offset.value_or(auto_offset(judge.robot()));
     if (options.stance == Stance::Settled)
@@ -337,7 +409,9 @@ SpawnList sample(const Judge& judge, const SampleOptions& wanted)
     // with one more slot.
     for (std::size_t slots = one ? 1 : std::size_t(std::max(1, judge.map().layers));; ++slots) {
         SpawnList out = empty_list(options);
-        if (Sampler(judge, options, slots).run(out)) return out;
+        if (!Sampler(judge, places, meter, options, slots).run(out)) continue;
+        measure_columns(meter, options, out);
+        return out;
     }
 }
 

@@ -52,6 +52,8 @@ struct Candidate {
     bool on_ground = false;         ///< the draw gave a pose; only set by sample()
     bool on_double_ground = false;  ///< as counted in SpawnList; only set by sample()
     bool off_area = false;
+    bool off_rules = false;      ///< does not comply with place rules; only set by sample()
+    bool not_preferred = false;  ///< only set by sample()
     bool near_avoided = false;
     bool clear = false;
     std::uint64_t exact_checks = 0;
@@ -83,6 +85,7 @@ void let_down(StandJudge& judge, const Column& column, const Vec3& place, double
     out.spawn = {pose.has_pose ? pose.lifted(lift).position : place, pose.yaw, pose.roll, pose.pitch};
     out.rest = {pose.tilt, pose.margin, choice.free_length};
     out.verdict = pose.verdict;
+    out.off_rules = pose.off_rules;
     out.exact_checks = choice.exact_checks;
 }
 

@@ -86,6 +86,8 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
     out.contacts = std::move(rest.contacts);
     judge_rest(column, rest, out);
     if (out.verdict == Verdict::Valid && is_reachable_ && !is_reachable_(out)) out.verdict = Verdict::Unreachable;
+    out.off_rules = out.verdict == Verdict::Valid && complies_ && !complies_(out);
+    if (out.off_rules) out.verdict = Verdict::Unreachable;
     return out;
 }
 

@@ -16,10 +16,11 @@ void check_filter(const char* function, const ReachFilter& is_reachable, Stance 
 /// Lets the robot down and judges its settled poses, for one thread.
 class StandJudge {
 public:
-    /// Valid poses that the filter refuses are `unreachable`. Without a filter, there are no such poses.
-    explicit StandJudge(const Judge::Impl& shared, ReachFilter is_reachable = {})
+    /// Valid poses that a filter refuses are `unreachable`. Without filters, there are no such poses. Those that only
+    /// the second filter refuses have SettledPose::off_rules.
+    explicit StandJudge(const Judge::Impl& shared, ReachFilter is_reachable = {}, ReachFilter complies = {})
         : shared_(shared), settler_(shared.settler()), upright_(shared, 0), checker_(shared.checker),
-          is_reachable_(std::move(is_reachable))
+          is_reachable_(std::move(is_reachable)), complies_(std::move(complies))
     {
     }
 
@@ -65,7 +66,7 @@ private:
     Settler::Workspace workspace_;
     PoseJudge upright_;
     PoseChecker checker_;
-    const ReachFilter is_reachable_;
+    const ReachFilter is_reachable_, complies_;
     std::optional<ClearanceMeter> clearances_;  ///< made when it is first needed
 };
 

@@ -20,8 +20,8 @@ struct CommonArgs {
 
 /// Headings of --help, below a command's most common options.
 namespace help_group {
-inline const std::string ground = "Poses and ground", rest = "Robot at rest", region = "Region", robot = "Robot",
-                         reach = "Reach", repair = "Repair", scene = "Scene", picture = "Picture",
+inline const std::string ground = "Poses and ground", rest = "Robot at rest", region = "Region", place = "Place",
+                         robot = "Robot", reach = "Reach", repair = "Repair", scene = "Scene", picture = "Picture",
                          simulator = "Files for simulators", run = "Output and run";
 }
 

@@ -6,6 +6,7 @@
 #include "messages.h"
 #include "numbers.h"
 #include "output.h"
+#include "place_args.h"
 #include "reach_args.h"
 #include "simulator_output.h"
 #include "spawn_advice.h"
@@ -39,6 +40,7 @@ struct SpawnArgs : QueryArgs {
     GroundArgs ground;
     IslandArgs islands;  ///< only for `sample`
     PairArgs pairs;      ///< only for `sample`
+    PlaceArgs places;    ///< only for `sample`
     std::string bounds, yaw = "0", format = "csv", out;
 
     bool is_thesis() const { return format == "thesis"; }
@@ -48,6 +50,12 @@ std::string upper_first(std::string text)
 {
     if (!text.empty()) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
     return text;
+}
+
+bool has_place_rules(const SearchOptions&) { return false; }
+bool has_place_rules(const SampleOptions& options)
+{
+    return options.place.has_limits() || !options.measures.prefer.empty();
 }
 
 /// Returns why fewer spawns than wanted were found, and what may give more. Here and below, `Options` is SearchOptions
@@ -63,6 +71,7 @@ std::string shortfall(const Options& options, const SpawnArgs& args, const Spawn
                                              .min_distance = options.min_distance,
                                              .has_region = !options.area.is_everywhere(),
                                              .is_near_avoided = list.near_avoided > 0,
+                                             .has_place_rules = has_place_rules(options),
                                              .counts = list.counts});
     if (list.is_full && list.spawns.empty())
         return std::string("no spawn fits: it is proven that no pose is valid") +
@@ -70,7 +79,7 @@ std::string shortfall(const Options& options, const SpawnArgs& args, const Spawn
     if (list.is_full)
         return "only " + found + " of " + wanted + " spawns fit: it is proven that none can be added to these " +
                found + "; " + advice + " may give more";
-    if (command == "search" || args.is_settled())
+    if (command == "search" || args.is_settled() || has_place_rules(options))
         return only + "; " + advice + " may give " + (list.spawns.empty() ? "some" : "more");
     char area[32];
     std::snprintf(area, sizeof area, "%.3g", list.undecided_area);
@@ -142,11 +151,16 @@ void fill(Summary& summary, const Options& options, const SpawnList& list)
         (options.avoid.empty() ? "" : ", " + std::to_string(list.near_avoided) + " near avoided poses") +
         (options.area.is_everywhere() && list.off_area == 0
              ? ""
-             : ", " + std::to_string(list.off_area) + " " + off_area_words(options)));
+             : ", " + std::to_string(list.off_area) + " " + off_area_words(options)) +
+        (has_place_rules(options) ? ", " + std::to_string(list.off_rules) + " against the rules of place" : "") +
+        (list.not_preferred > 0 ? ", " + std::to_string(list.not_preferred) + " not preferred" : ""));
     summary.draws = {{"all", list.draws},
                      {"too_close", list.too_close},
                      {"near_avoided", list.near_avoided},
                      {"off_region", list.off_area}};
+    if (!has_place_rules(options)) return;
+    summary.draws.emplace_back("off_rules", list.off_rules);
+    summary.draws.emplace_back("not_preferred", list.not_preferred);
 }
 
 /// The part of run_spawn() that differs between the commands.
@@ -253,6 +267,8 @@ SampleOptions sample_options(const SpawnArgs& args, const CLI::App& command)
                           .area = read_area(args, args.area),
                           .threads = args.threads,
                           .progress = progress_bar(args, "sample")};
+    options.place = place_rules(args.places, command);
+    options.measures = place_measures(args.places, command);
     set_stance(options, args, args.ground, command);
     if (const auto box = lone_box(args.area)) {  // as bounds, so that every draw is within the region
         options.bounds = *box;
@@ -271,6 +287,7 @@ void complete(SampleOptions& asked, const ZRange& heights, const SpawnArgs& args
     notice_if_off_map(args, session.map, "--region", asked.bounds);
     notice_about_area(args, session.map, asked.area);
     notice_if_no_layer(args, session.map, asked.layers);
+    check_places(args, asked.place, session.map);
     notices_about_stance(args, command, session.robot);
     notice_about_heading(args, session.map, asked.heading);
 }
@@ -278,7 +295,7 @@ void complete(SampleOptions& asked, const ZRange& heights, const SpawnArgs& args
 /// Throws ArgumentError for options that pairs do not have.
 void check_pairs(const SpawnArgs& args, const CLI::App& command)
 {
-    refuse(command, {"--count", "--min-distance"}, "has no effect with --pairs; leave it out");
+    refuse(command, {"--count", "--min-distance", "--columns"}, "has no effect with --pairs; leave it out");
     if (!args.is_settled())
         throw ArgumentError(
             "--pairs is only for settled robots, because paths lead between settled poses; leave "
@@ -363,6 +380,8 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
         Settings own{{"Layers", args.ground.layers}};
         if (asked.offset) own.insert(own.begin(), {"Offset (m)", number(*asked.offset)});
         if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
+        if (const std::string rules = to_string(asked.place); !rules.empty()) own.emplace_back("Place", rules);
+        if (!asked.measures.prefer.empty()) own.emplace_back("Prefer", words_of(asked.measures));
         if (!islands.selects_all()) own.emplace_back("Islands", words_of(islands));
         return own;
     };
@@ -450,11 +469,13 @@ void add_sample(CLI::App& app, ChosenCommand& chosen)
     command.add_option("--detour", args->pairs.detour,
                        "Smallest ratio of the path's length to the straight line, >= 1 (default 1)");
     command.add_option("--path", args->pairs.path, "CSV file to write: the poses on the path of each pair");
+    add_places(command, args->places);
     add_spawn_groups(command, *args);
     command.footer(
         "Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random\n"
         "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --island largest --reach-step 0.3\n"
-        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 --pairs 20 --min-path 5 --reach-step 0.3");
+        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 --pairs 20 --min-path 5 --reach-step 0.3\n"
+        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --near 'cube*' 0.5:1 --facing 'cube*'");
     set_work(command, args, chosen, run_sample);
 }
 

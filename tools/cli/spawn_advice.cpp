@@ -73,6 +73,7 @@ std::string spawn_advice(const QueryArgs& args, const GroundArgs& ground, const 
     add_if(!heights.empty(), heights);
     add_if(shortfall.min_distance > 0, "a smaller --min-distance");
     add_if(shortfall.is_near_avoided, "a smaller --avoid-distance");
+    add_if(shortfall.has_place_rules, "wider rules of place");
     add_changes(changes, args, shortfall);
     add_if(shortfall.is_search, "more --max-failures");
     add_if(!shortfall.is_search && !args.is_settled(), "another --offset");

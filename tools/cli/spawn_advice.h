@@ -10,7 +10,8 @@ struct Shortfall {
     double min_distance = 0;
     bool has_region = false;
     bool is_near_avoided = false;  ///< a draw was too near to an avoided pose
-    VerdictCounts counts = {};     ///< of the positions that were judged
+    bool has_place_rules = false;
+    VerdictCounts counts = {};  ///< of the positions that were judged
 };
 
 /// Returns the changes that may give more spawns, for example "a smaller --min-distance or a wider --region": first
