@@ -555,7 +555,8 @@ TEST_CASE("misspelled options, values and commands get a suggestion")
     CHECK(said("sample --min-dist 2 map -n 1" + box) ==
           "spawnfield: --min-dist is not an option of sample; did you mean --min-distance?" + usage_hint);
     CHECK(said(sample + "--distance 2") ==
-          "spawnfield: --distance is not an option of sample; did you mean --min-distance or --avoid-distance?" +
+          "spawnfield: --distance is not an option of sample; did you mean --min-distance, --distance-to or "
+          "--avoid-distance?" +
               usage_hint);
     CHECK(said("check map --robt box:1,1,1 --poses p.csv") ==
           "spawnfield: --robt is not an option of check; did you mean --robot?" +

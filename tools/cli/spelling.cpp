@@ -34,21 +34,20 @@ std::vector<std::string> words_that(const std::vector<std::string>& words,
     return out;
 }
 
-/// Returns the words that begin with the text, or else those nearest to it, or else those that contain it. A word that
-/// ends with it (`--min-distance` for `--distance`) is nearer than one with two other letters.
+/// Returns the words that begin or end with the text (`--distance-to` and `--min-distance` for `--distance`) if one
+/// begins with it. Otherwise, returns those nearest to it, or else those that contain it. A word that ends with it is
+/// nearer than one with two other letters.
 std::vector<std::string> likely(const std::string& text, const std::vector<std::string>& words)
 {
     const std::string core = text.substr(std::min(text.find_first_not_of('-'), text.size()));
-    if (core.size() > 1)
-        if (auto longer = words_that(words, [&](const std::string& word) { return word.starts_with(text); });
-            !longer.empty())
-            return longer;
+    const auto begins = [&](const std::string& word) { return word.starts_with(text); };
+    const auto ends = [&](const std::string& word) { return core.size() > 3 && word.ends_with('-' + core); };
+    if (core.size() > 1 && std::any_of(words.begin(), words.end(), begins))
+        return words_that(words, [&](const std::string& word) { return begins(word) || ends(word); });
     std::size_t nearest = 1 + core.size() / 4;
     for (const std::string& word : words) nearest = std::min(nearest, edit_distance(text, word));
-    if (nearest > 1 && core.size() > 3)
-        if (auto longer = words_that(words, [&](const std::string& word) { return word.ends_with('-' + core); });
-            !longer.empty())
-            return longer;
+    if (nearest > 1)
+        if (auto longer = words_that(words, ends); !longer.empty()) return longer;
     const auto near = words_that(words, [&](const std::string& word) {
         return word.size() > nearest + 1 && edit_distance(text, word) == nearest;
     });
