@@ -643,7 +643,7 @@ Decision decide(const Scene& scene, const Bounds& map_bounds, const Robot& robot
     constexpr std::array for_its_ground = {Verdict::Aerial, Verdict::OffTerrain, Verdict::Submerged};
     if (!decision.verdict || std::ranges::find(for_its_ground, *decision.verdict) == for_its_ground.end())
         return decision;
-    // Such a pose is valid if it is valid with the ground between its origin and its underside.
+    // It is also valid if it is valid with the ground between its origin and its underside.
     const Vec3& position = scene_from_robot.position;
     limits.above = underside(robot, scene_from_robot, position.x(), position.y());
     for (const Vec3& neighbour : neighbours(position, margin))

@@ -254,7 +254,7 @@ struct SampleOptions {
 /// a damaged map. Sources: White, Cline, Egbert, Poisson disk point sets by hierarchical dart throwing, 2007; Ebeida et
 /// al., A simple algorithm for maximal Poisson-disk sampling in high dimensions, 2012.
 ///
-/// Of settled poses there are no such proofs yet: sampling ends after 5,000 draws in a row without a spawn. With place
+/// Settled poses have no such proofs yet: sampling ends after 5,000 draws in a row without a spawn. With place
 /// rules, draws are made only in cells in which the rules can hold, and sampling ends after 100,000 such draws.
 SPAWNFIELD_API SpawnList sample(const Judge& judge, const SampleOptions& options);
 
