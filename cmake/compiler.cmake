@@ -7,9 +7,11 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  # ccache can use precompiled headers only with these two settings. They have no effect on our sources, which do not
-  # use __TIME__.
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
+  # ccache can use precompiled headers only with this sloppiness. It has no effect on our sources, which do not use
+  # __TIME__. Comments must count: gcc includes a header with #pragma once again if its text is not the text in the
+  # precompiled header, so one from the cache with other comments leads to redefinitions.
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_COMMENTS=1 ${CCACHE})
 endif()
 
 # Headers take most of the compile time. With SPAWNFIELD_UNITY the source files of a folder form one translation unit,
