@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "column/columns.h"
 #include "column/uniform_column.h"
+#include "map/changed_terrain.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/terrain.h>
@@ -22,6 +23,16 @@ const std::string& empty_tile()
 {
     static const std::string stream = deflated(std::vector<float>(page_tile_cells, nothing));
     return stream;
+}
+
+/// Returns whether a tile is all NaN. Another version of zlib may have written other bytes than those of empty_tile().
+bool is_empty(const std::string& stream)
+{
+    if (stream == empty_tile()) return true;
+    if (stream.size() > 2 * empty_tile().size()) return false;
+    std::vector<float> values(page_tile_cells);
+    inflate_floats(stream, TerrainMap::tile, values);
+    return std::all_of(values.begin(), values.end(), [](float value) { return std::isnan(value); });
 }
 
 /// The pages of one tile. A page is made when the first height is set.
@@ -173,6 +184,43 @@ HeightImage highest_within(const TerrainMap& terrain, const ZRange& z)
     return out;
 }
 
+namespace {
+
+/// Returns the map of these tiles, row after row.
+TerrainMap terrain_of(const GridFrame& frame, std::vector<TilePages<std::string>> tiles)
+{
+    TerrainMap out;
+    out.frame = frame;
+    std::size_t layers = 1;  // one page of heights is written even without terrain
+    for (const auto& tile : tiles) layers = std::max(layers, tile.height.size());
+    for (std::size_t k = 0; k < layers; ++k)
+        add_page("height." + std::to_string(k), tiles, true, out,
+                 [&](auto& tile) { return k < tile.height.size() ? &tile.height[k] : nullptr; });
+    add_page("water", tiles, false, out, [](auto& tile) { return &tile.water; });
+    add_page("obstacle", tiles, false, out, [](auto& tile) { return &tile.obstacle; });
+    return out;
+}
+
+/// Returns the pages of one tile of a map.
+TilePages<std::string> tile_of(const TerrainMap& terrain, std::size_t tile)
+{
+    const auto stream = [&](const std::string& name) {
+        const TerrainMap::Page* const page = terrain.find(name);
+        return page == nullptr || is_empty(page->tiles[tile]) ? std::string() : page->tiles[tile];
+    };
+    TilePages<std::string> out{.height = {}, .water = stream("water"), .obstacle = stream("obstacle")};
+    for (int k = 0; k < terrain.layers(); ++k) {
+        out.height.push_back(stream("height." + std::to_string(k)));
+        if (out.height.back().empty()) {  // lower layers have no heights either
+            out.height.pop_back();
+            break;
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
 TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads, const Progress& progress,
                              const ZRange& z_limits)
 {
@@ -182,14 +230,34 @@ TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, i
     parallel_for(tiles.size(), threads, progress, [&](std::size_t t) {
         tiles[t] = TileRaster(geometry, frame, z_limits, int(t) / out.tile_cols(), int(t) % out.tile_cols()).run();
     });
-    std::size_t layers = 1;  // one page of heights is written even without terrain
-    for (const auto& tile : tiles) layers = std::max(layers, tile.height.size());
-    for (std::size_t k = 0; k < layers; ++k)
-        add_page("height." + std::to_string(k), tiles, true, out,
-                 [&](auto& tile) { return k < tile.height.size() ? &tile.height[k] : nullptr; });
-    add_page("water", tiles, false, out, [](auto& tile) { return &tile.water; });
-    add_page("obstacle", tiles, false, out, [](auto& tile) { return &tile.obstacle; });
-    return out;
+    return terrain_of(frame, std::move(tiles));
+}
+
+TerrainMap changed_terrain(const TerrainMap& base, const Geometry& geometry, std::span<const ElementBox> boxes,
+                           const ZRange& z_limits, int threads)
+{
+    const GridFrame& frame = base.frame;
+    const int cols = base.tile_cols();
+    std::vector<TilePages<std::string>> tiles(std::size_t(base.tile_rows()) * std::size_t(cols));
+    parallel_for(tiles.size(), threads, {}, [&](std::size_t t) {
+        const int row = int(t) / cols, col = int(t) % cols;
+        const double side = TerrainMap::tile * frame.cell, x = frame.x0 + col * side,
+                     y = frame.y0 + frame.rows * frame.cell - row * side, pad = frame.cell;
+        const auto is_near = [&](const ElementBox& box) {
+            return box.min[0] <= x + side + pad && box.max[0] >= x - pad && box.min[1] <= y + pad &&
+                   box.max[1] >= y - side - pad;
+        };
+        tiles[t] = std::any_of(boxes.begin(), boxes.end(), is_near)
+                       ? TileRaster(geometry, frame, z_limits, row, col).run()
+                       : tile_of(base, t);
+    });
+    return terrain_of(frame, std::move(tiles));
+}
+
+int count_layers(const TerrainMap& terrain)
+{
+    const TerrainMap::Page* const top = terrain.find("height.0");
+    return top == nullptr || std::all_of(top->tiles.begin(), top->tiles.end(), is_empty) ? 0 : terrain.layers();
 }
 
 }  // namespace spawnfield
