@@ -117,8 +117,9 @@ TEST_CASE("wrong changes are refused with a reason")
         CHECK(!std::filesystem::exists(yard / "out.csv"));
         return run.err;
     };
-    CHECK_THAT(complaint("--without 'pallet*'", 2),
-               Contains("\"pallet*\" matches no part of the map; it has 4 parts: floor, wall, crate-1, crate-2"));
+    CHECK_THAT(
+        complaint("--without 'pallet*'", 2),
+        Contains("--without \"pallet*\" matches no part of the map; it has 4 parts: floor, wall, crate-1, crate-2"));
     yard.write("same.yaml", head + crates);
     CHECK_THAT(
         complaint("--with same.yaml", 4),

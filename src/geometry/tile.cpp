@@ -3,6 +3,8 @@
 #include "base/tile_store.h"
 #include "scene/elements.h"
 
+#include <functional>
+
 namespace spawnfield {
 namespace {
 
@@ -72,11 +74,13 @@ private:
     static std::vector<std::uint32_t> distinct(const std::vector<std::uint32_t>& values,
                                                std::vector<std::uint8_t>& numbers)
     {
+        numbers.assign(values.size(), 0);
+        const bool all_equal = std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end();
+        if (all_equal && !values.empty()) return {values.front()};  // most often the pieces
         std::vector<std::uint64_t> sorted;  // value and place in one number, which is sorted fast
         for (std::size_t k = 0; k < values.size(); ++k) sorted.push_back(std::uint64_t{values[k]} << 8 | k);
         std::sort(sorted.begin(), sorted.end());
         std::vector<std::uint32_t> out;
-        numbers.resize(values.size());
         for (const std::uint64_t both : sorted) {
             const auto value = std::uint32_t(both >> 8);
             if (out.empty() || out.back() != value) out.push_back(value);

@@ -90,6 +90,9 @@ Map with_scene(const CommonArgs& common, const SceneOptions& options, const std:
 {
     Scene extra = load_scene(file, options);
     notices(common, extra.notices);
+    if (extra.origin)
+        notice(common,
+               file + ": its survey coordinates are not used; its parts are where the file's own frame has them");
     for (const std::string& part : parts_off_map(extra, map))
         notice(common, file + ": part \"" + part + "\" lies off the map, which is " + to_string(map.bounds, 2) +
                            "; only robots that reach over the map's edge can touch it");
@@ -122,12 +125,16 @@ void add_changes(CLI::App& command, ChangeArgs& args)
 
 Map changed_map(const CommonArgs& common, const ChangeArgs& args, const std::vector<std::string>& model_paths, Map map)
 {
-    if (!args.without.empty()) map = without_parts(map, args.without, common.threads);
+    try {
+        map = without_parts(map, args.without, common.threads);
+    } catch (const ArgumentError& error) {
+        throw ArgumentError(std::string("--without ") + error.message());
+    }
     const std::vector<fs::path> folders(model_paths.begin(), model_paths.end());
     for (const std::string& text : args.with) {
         const std::optional<PlacedRobot> robot = parse_robot(common, text);
         map = robot ? with_robot(common, *robot, {.model_paths = folders}, text, map)
-                    : with_scene(common, {.model_paths = folders}, text, map);
+                    : with_scene(common, {.model_paths = folders, .bounds = map.bounds}, text, map);
     }
     const LabelCount& terrain = map.geometry.labels()[std::size_t(Label::Terrain)];
     if (args.has_changes() && terrain.triangles + terrain.primitives == 0)
