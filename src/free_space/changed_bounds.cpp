@@ -54,9 +54,9 @@ private:
     void add_tiles_of(const ElementBox& box, std::vector<std::uint32_t>& numbers) const
     {
         const TileLevel& level = raster_.levels()[0];
-        const auto tile_of = [&](double place, double origin, double pad, std::uint32_t tiles) {
+        const auto tile_of = [&](double place, double origin, double pad, std::uint32_t count) {
             const double tile = std::floor(((place - origin) / level.cell + pad) / BoundsTile::side);
-            return std::clamp(tile, -1.0, double(tiles));
+            return std::clamp(tile, -1.0, double(count));
         };
         const double first_col = std::max(0.0, tile_of(box.min[0], raster_.x0, -1, level.tile_cols)),
                      last_col = std::min(level.tile_cols - 1.0, tile_of(box.max[0], raster_.x0, 1, level.tile_cols)),

@@ -13,6 +13,10 @@ namespace spawnfield {
 TerrainMap changed_terrain(const TerrainMap& base, const Geometry& geometry, std::span<const ElementBox> boxes,
                            const ZRange& z_limits, int threads = 0);
 
+/// Returns count_layers() of changed_terrain(), in less time.
+int changed_layers(const TerrainMap& base, const Geometry& geometry, std::span<const ElementBox> boxes,
+                   const ZRange& z_limits, int threads = 0);
+
 /// Returns the largest number of layers in a cell. It is 0 without any height: TerrainMap::layers() is then 1, because
 /// the page of the highest layer always exists.
 int count_layers(const TerrainMap& terrain);

@@ -47,8 +47,7 @@ Map changed_map(const Map& map, ChangedGeometry changed, const std::string& chan
     out.change = std::make_shared<const MapChange>(MapChange{map, std::move(changed.boxes)});
     if (changed.changes_terrain) {
         out.floors.reset();
-        out.layers = count_layers(
-            changed_terrain(read_terrain(map), out.geometry, out.change->boxes, out.z_limits, threads));
+        out.layers = changed_layers(read_terrain(map), out.geometry, out.change->boxes, out.z_limits, threads);
     }
     return out;
 }

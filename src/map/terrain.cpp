@@ -53,6 +53,24 @@ public:
 
     TilePages<std::string> run()
     {
+        scan();
+        TilePages<std::string> out;
+        for (const auto& layer : pages_.height) out.height.push_back(deflated(layer));
+        if (!pages_.water.empty()) out.water = deflated(pages_.water);
+        if (!pages_.obstacle.empty()) out.obstacle = deflated(pages_.obstacle);
+        return out;
+    }
+
+    /// Returns the largest number of layers in a cell of the tile.
+    std::size_t count_layers()
+    {
+        scan();
+        return pages_.height.size();
+    }
+
+private:
+    void scan()
+    {
         constexpr int part = 64;  // cells; the columns of part x part cells stay in a core's cache
         const int first_row = frame_.rows - row0_ - rows_;
         Columns centres;
@@ -72,14 +90,8 @@ public:
                 for (int j = 0; j < rows; ++j)
                     for (int i = 0; i < cols; ++i) add_cell(rows_ - 1 - j0 - j, i0 + i, centres.at(i, j));
             }
-        TilePages<std::string> out;
-        for (const auto& layer : pages_.height) out.height.push_back(deflated(layer));
-        if (!pages_.water.empty()) out.water = deflated(pages_.water);
-        if (!pages_.obstacle.empty()) out.obstacle = deflated(pages_.obstacle);
-        return out;
     }
 
-private:
     void add_cell(int row, int col, const ColumnView& column)
     {
         const std::size_t cell = std::size_t(row) * TerrainMap::tile + std::size_t(col);
@@ -219,6 +231,19 @@ TilePages<std::string> tile_of(const TerrainMap& terrain, std::size_t tile)
     return out;
 }
 
+/// Returns whether a tile of a map meets a box of a change, or comes within a cell of one.
+bool may_change(const TerrainMap& terrain, std::size_t tile, std::span<const ElementBox> boxes)
+{
+    const GridFrame& frame = terrain.frame;
+    const int row = int(tile) / terrain.tile_cols(), col = int(tile) % terrain.tile_cols();
+    const double side = TerrainMap::tile * frame.cell, x = frame.x0 + col * side,
+                 y = frame.y0 + frame.rows * frame.cell - row * side, pad = frame.cell;
+    return std::any_of(boxes.begin(), boxes.end(), [&](const ElementBox& box) {
+        return box.min[0] <= x + side + pad && box.max[0] >= x - pad && box.min[1] <= y + pad &&
+               box.max[1] >= y - side - pad;
+    });
+}
+
 }  // namespace
 
 TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads, const Progress& progress,
@@ -236,22 +261,27 @@ TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, i
 TerrainMap changed_terrain(const TerrainMap& base, const Geometry& geometry, std::span<const ElementBox> boxes,
                            const ZRange& z_limits, int threads)
 {
-    const GridFrame& frame = base.frame;
     const int cols = base.tile_cols();
     std::vector<TilePages<std::string>> tiles(std::size_t(base.tile_rows()) * std::size_t(cols));
     parallel_for(tiles.size(), threads, {}, [&](std::size_t t) {
-        const int row = int(t) / cols, col = int(t) % cols;
-        const double side = TerrainMap::tile * frame.cell, x = frame.x0 + col * side,
-                     y = frame.y0 + frame.rows * frame.cell - row * side, pad = frame.cell;
-        const auto is_near = [&](const ElementBox& box) {
-            return box.min[0] <= x + side + pad && box.max[0] >= x - pad && box.min[1] <= y + pad &&
-                   box.max[1] >= y - side - pad;
-        };
-        tiles[t] = std::any_of(boxes.begin(), boxes.end(), is_near)
-                       ? TileRaster(geometry, frame, z_limits, row, col).run()
+        tiles[t] = may_change(base, t, boxes)
+                       ? TileRaster(geometry, base.frame, z_limits, int(t) / cols, int(t) % cols).run()
                        : tile_of(base, t);
     });
-    return terrain_of(frame, std::move(tiles));
+    return terrain_of(base.frame, std::move(tiles));
+}
+
+int changed_layers(const TerrainMap& base, const Geometry& geometry, std::span<const ElementBox> boxes,
+                   const ZRange& z_limits, int threads)
+{
+    const int cols = base.tile_cols();
+    std::vector<std::size_t> layers(std::size_t(base.tile_rows()) * std::size_t(cols));
+    parallel_for(layers.size(), threads, {}, [&](std::size_t t) {
+        layers[t] = may_change(base, t, boxes)
+                        ? TileRaster(geometry, base.frame, z_limits, int(t) / cols, int(t) % cols).count_layers()
+                        : tile_of(base, t).height.size();
+    });
+    return int(*std::max_element(layers.begin(), layers.end()));
 }
 
 int count_layers(const TerrainMap& terrain)
