@@ -480,16 +480,17 @@ TEST_CASE("a geometry file with invalid indices is refused, even if its checksum
         Geometry::Impl changed;
         changed.elements = geometry.impl().elements;
         changed.parts = geometry.impl().parts;
-        std::vector<TileLevel> levels = geometry.impl().tiles().levels();
-        std::string tiles(geometry.impl().tiles().bytes());
+        const Forest& forest = *geometry.impl().forests[0];
+        std::vector<TileLevel> levels = forest.tiles.levels();
+        std::string tiles(forest.tiles.bytes());
         TileEntry* entry = nullptr;  // the tile with the triangles and the sphere
         for (TileEntry& tile : levels[0].tiles)
             if (tile.size > 0) entry = &tile;
         char* const tile = tiles.data() + entry->offset;
         change(levels, tile, Tile({tile, entry->size}));
         entry->checksum = XXH64(tile, entry->size, 0);
-        changed.set_tiles(TileStore(std::move(levels), spawnfield::bytes_of(std::move(tiles))),
-                          geometry.impl().trees());
+        changed.forests = {std::make_shared<const Forest>(
+            Forest{TileStore(std::move(levels), spawnfield::bytes_of(std::move(tiles))), forest.trees, forest.parts})};
         const fs::path file = folder / "geometry.bin";
         return complaint(folder, [&] {
             const ListedFile written = write_geometry(

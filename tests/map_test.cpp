@@ -46,7 +46,7 @@ TEST_CASE("a map that is read back has the geometry and the answers of the one t
         CHECK(map.bounds.min == scene.bounds().min);
         CHECK(map.bounds.max == scene.bounds().max);
         const TestMap fresh = map_of(scene);
-        CHECK(map.geometry.impl().tiles().bytes() == fresh.geometry.impl().tiles().bytes());
+        CHECK(map.geometry.impl().forests[0]->tiles.bytes() == fresh.geometry.impl().forests[0]->tiles.bytes());
         CHECK(map.geometry.parts().size() == scene.parts.size());
         for (std::size_t part = 0; part < map.geometry.parts().size(); ++part)
             CHECK(map.geometry.parts()[part].name == scene.parts[part].name);

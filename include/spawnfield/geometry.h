@@ -20,8 +20,10 @@ public:
     explicit Geometry(const Scene& scene, int threads = 0);
 
     std::uint64_t element_count() const;
-    const Bounds& bounds() const;            ///< of all elements together
-    const std::vector<Part>& parts() const;  ///< of the scene, in the scene's order
+    const Bounds& bounds() const;  ///< of all elements together
+    /// Of the scene, in the scene's order. Removed parts (changes.h) keep their place, with all counts 0.
+    const std::vector<Part>& parts() const;
+    bool is_removed(std::size_t part) const;
     const LabelCounts& labels() const;
 
     struct Impl;

@@ -7,6 +7,7 @@
 #include <spawnfield/terrain.h>
 
 #include <map>
+#include <memory>
 
 namespace spawnfield {
 
@@ -16,6 +17,8 @@ namespace spawnfield {
 /// of version 2 has no z limits, and its floors are computed from terrain.tiff.
 inline constexpr int map_format_version = 5;
 
+struct MapChange;  // of a changed map: what differs from the map before
+
 /// A scene, prepared for queries. `folder` is empty until the map is written or read.
 struct Map {
     std::string name;
@@ -24,16 +27,19 @@ struct Map {
     double resolution = 0.1;          ///< side of a terrain cell, m
     double occupancy_resolution = 0;  ///< side of a voxel, m
     Geometry geometry;
-    SolidBounds solid_bounds;                  ///< for the cells of the terrain's raster
-    std::optional<GeoOrigin> origin;           ///< the scene's place in the coordinates of a survey
-    bool is_unlabelled = false;                ///< as in Scene: also desks and wall tops are terrain
-    int layers = 0;                            ///< largest number of terrain layers in the column of a cell's centre
-    std::optional<std::vector<Floor>> floors;  ///< from find_floors(); no value for a map of format version 2
-    std::string scene_file;                    ///< name of the file from which it was baked
-    std::string scene_hash;                    ///< xxh64 of that file, 16 hexadecimal digits
-    std::string hash;                          ///< 16 hexadecimal digits, from the checksums of the map's files
+    SolidBounds solid_bounds;         ///< for the cells of the terrain's raster
+    std::optional<GeoOrigin> origin;  ///< the scene's place in the coordinates of a survey
+    bool is_unlabelled = false;       ///< as in Scene: also desks and wall tops are terrain
+    int layers = 0;                   ///< largest number of terrain layers in the column of a cell's centre
+    /// From find_floors(). No value for a map of format version 2, and for a changed map if terrain has changed.
+    std::optional<std::vector<Floor>> floors;
+    std::string scene_file;  ///< name of the file from which it was baked
+    std::string scene_hash;  ///< xxh64 of that file, 16 hexadecimal digits
+    std::string hash;        ///< 16 hexadecimal digits, from the checksums of the map's files
     std::filesystem::path folder;
     int format_version = map_format_version;  ///< of the folder
+    std::vector<std::string> changes = {};    ///< of a changed map (changes.h), in words: "without crate*", …
+    std::shared_ptr<const MapChange> change = {};
 };
 
 /// The files of a map folder, except map.yaml. Other files in the folder do not belong to the map.

@@ -23,6 +23,7 @@ public:
     struct Impl;
     explicit SolidBounds(std::shared_ptr<const Impl> impl);
     const Impl& impl() const { return *impl_; }
+    const std::shared_ptr<const Impl>& shared_impl() const { return impl_; }
 
 private:
     std::shared_ptr<const Impl> impl_;

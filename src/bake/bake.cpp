@@ -6,6 +6,7 @@
 #include "base/png.h"
 #include "base/stopwatch.h"
 #include "map/bounds_file.h"
+#include "map/changed_terrain.h"
 #include "map/geometry_file.h"
 #include "map/map_yaml.h"
 #include "map/terrain_file.h"
@@ -100,14 +101,6 @@ std::pair<double, double> write_heightmap_png(const HeightImage& top, const fs::
     return {low - step, low + 65534 * step};
 }
 
-/// Returns the largest number of layers in a column. It is 0 if `top`, the highest layer, is empty:
-/// TerrainMap::layers() is then 1, because the page of the highest layer always exists.
-int count_layers(const TerrainMap& terrain, const HeightImage& top)
-{
-    const bool is_empty = std::all_of(top.values.begin(), top.values.end(), [](float z) { return std::isnan(z); });
-    return is_empty ? 0 : terrain.layers();
-}
-
 /// Returns the progress function of one stage, during which the progress of the whole grows from `from` to `to`.
 Progress part_of(const Progress& progress, double from, double to)
 {
@@ -135,7 +128,7 @@ WrittenFiles write_files(const Map& map, const TerrainMap& terrain, const fs::pa
     };
     const auto heightmap = [&] {
         const HeightImage top = page_image(terrain, "height.0");
-        out.layers = count_layers(terrain, top);
+        out.layers = count_layers(terrain);
         out.heightmap_z = write_heightmap_png(top, folder / "heightmap.png");
     };
     const std::array<std::pair<const char*, std::function<void()>>, 6> stages{{
@@ -204,7 +197,7 @@ Map make_map(const Scene& scene, const BakeOptions& options)
     const TerrainMap terrain = rasterize_terrain(map.geometry, frame_around(map.bounds, map.resolution),
                                                  options.threads, part_of(options.progress, 0, 0.5), map.z_limits);
     map.floors = find_floors(terrain, options.threads);
-    map.layers = count_layers(terrain, page_image(terrain, "height.0"));
+    map.layers = count_layers(terrain);
     map.solid_bounds = SolidBounds(map.geometry, map.bounds, map.resolution, options.threads,
                                    part_of(options.progress, 0.5, 1));
     return map;

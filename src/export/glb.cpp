@@ -41,36 +41,56 @@ Point rounded(const Vec3& point, const Vec3& origin)
     return {float(p.x()), float(p.y()), float(p.z())};
 }
 
-/// Returns the scene's elements in the scene's order. Tiles have another order; an element's number is its place in the
-/// scene.
+/// Calls visit(tile, element) for each element of the scene, on several threads.
+template <class Visit>
+void for_each_element(const Geometry::Impl& geometry, int threads, const Visit& visit)
+{
+    geometry.for_each_tree([&](const Forest& forest, std::size_t tree) {
+        parallel_for(forest.trees[tree].boxes().size(), threads, {}, [&](std::size_t t) {
+            const Tile tile = geometry.open(forest, tree, t);
+            for (const std::uint32_t id : tile.ids)
+                if (id >= geometry.next.element) forest.tiles.fail_inconsistent();
+            for_each_bit(tile.alive, [&](std::uint32_t element) { visit(tile, element); });
+        });
+    });
+}
+
+/// Returns the scene's elements in the scene's order. Tiles have another order; the numbers of elements are ascending
+/// in the scene, but some may be missing in a changed scene.
 Elements elements_of(const Geometry& geometry, const Vec3& origin, int threads)
 {
+    enum class Kind : std::uint8_t { None, Triangle, Primitive };
+    const auto kind_of = [](const Tile& tile, std::uint32_t element) {
+        return tile.is_triangle(element) ? Kind::Triangle : Kind::Primitive;
+    };
     const Geometry::Impl& impl = geometry.impl();
+    impl.expect_all();
+    std::vector<Kind> kinds(impl.next.element, Kind::None);
+    for_each_element(impl, threads, [&](const Tile& tile, std::uint32_t element) {
+        kinds[tile.ids[element]] = kind_of(tile, element);
+    });
+    std::vector<std::uint32_t> places(kinds.size());
+    std::uint32_t triangles = 0, primitives = 0;
+    for (std::size_t id = 0; id < kinds.size(); ++id)
+        if (kinds[id] != Kind::None) places[id] = kinds[id] == Kind::Triangle ? triangles++ : primitives++;
     Elements out;
-    std::uint64_t triangles = 0;
-    for (const LabelCount& count : impl.labels) triangles += count.triangles;
     out.triangles.resize(triangles);
-    out.primitives.resize(impl.elements - triangles);
-    impl.tiles().expect_all();
-    for (std::size_t tree = 0; tree < impl.trees().size(); ++tree)
-        parallel_for(impl.trees()[tree].boxes().size(), threads, {}, [&](std::size_t t) {
-            const Tile tile = impl.open(tree, t);
-            for (std::uint32_t element = 0; element < tile.elements(); ++element) {
-                const std::uint64_t id = tile.ids[element];
-                if (id >= impl.elements || tile.is_triangle(element) != (id < triangles))
-                    impl.tiles().fail_inconsistent();
-                if (tile.is_triangle(element)) {
-                    CornersOfTriangle& to = out.triangles[id];
-                    const auto corners = tile.corners(element);
-                    for (std::size_t c = 0; c < 3; ++c) to.corners[c] = rounded(corners[c], origin);
-                    to.part = tile.part(element);
-                    to.label = tile.label(element);
-                } else {
-                    const TilePrimitive& from = tile.primitive(element);
-                    out.primitives[id - triangles] = {from.shape(), from.part, from.label};
-                }
-            }
-        });
+    out.primitives.resize(primitives);
+    for_each_element(impl, threads, [&](const Tile& tile, std::uint32_t element) {
+        const std::uint32_t id = tile.ids[element], place = places[id];
+        if (kinds[id] != kind_of(tile, element))
+            impl.forests.front()->tiles.fail_inconsistent();  // two have one number
+        if (tile.is_triangle(element)) {
+            CornersOfTriangle& to = out.triangles[place];
+            const auto corners = tile.corners(element);
+            for (std::size_t c = 0; c < 3; ++c) to.corners[c] = rounded(corners[c], origin);
+            to.part = tile.part(element);
+            to.label = tile.label(element);
+        } else {
+            const TilePrimitive& from = tile.primitive(element);
+            out.primitives[place] = {from.shape(), from.part, from.label};
+        }
+    });
     return out;
 }
 

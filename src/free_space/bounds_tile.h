@@ -116,12 +116,20 @@ struct LooseTile {
 std::string packed(const LooseTile& tile);
 
 struct SolidBounds::Impl {
+    class ChangedTiles;  // changed_bounds.cpp
+
     double x0 = 0, y0 = 0;  ///< lower left corner of all levels, m
     bool is_whole = false;  ///< nothing solid is beyond the raster
     std::uint32_t tile_version = BoundsTile::version;
     TileStore tiles;  ///< level 0 is the finest; each next level has cells of twice the size
+    // Only for a changed scene (changed_bounds.h), in the place of `tiles`:
+    std::shared_ptr<const Impl> base;  ///< of the unchanged scene
+    std::unique_ptr<const ChangedTiles> changed;
 
-    const std::vector<TileLevel>& levels() const { return tiles.levels(); }
+    Impl();
+    ~Impl();
+
+    const std::vector<TileLevel>& levels() const { return base ? base->levels() : tiles.levels(); }
 
     /// Returns how many columns or rows of a level lie completely on the finest raster. The last coarse cells may reach
     /// beyond it.
@@ -129,15 +137,7 @@ struct SolidBounds::Impl {
     std::uint32_t whole_rows(std::size_t level) const { return levels()[0].rows >> level; }
 
     /// Returns a tile. It is empty if nothing in it is solid. Throws FileError for a damaged tile of a file.
-    BoundsTile open(std::size_t level, std::uint32_t col, std::uint32_t row) const
-    {
-        const std::size_t number = std::size_t{row} * levels()[level].tile_cols + col;
-        if (levels()[level].tiles[number].size == 0) return {};
-        const auto is_consistent = [&](std::string_view bytes) {
-            return BoundsTile::is_consistent(bytes, tile_version);
-        };
-        return BoundsTile(tiles.open(level, number, is_consistent), tile_version);
-    }
+    BoundsTile open(std::size_t level, std::uint32_t col, std::uint32_t row) const;
 };
 
 }  // namespace spawnfield

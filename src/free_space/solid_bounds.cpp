@@ -2,7 +2,7 @@
 #include "base/parallel.h"
 #include "column/cell_clip.h"
 #include "column/uniform_column.h"
-#include "free_space/bounds_tile.h"
+#include "free_space/bounds_raster.h"
 
 #include <xxhash.h>
 
@@ -48,9 +48,10 @@ LooseTile uniform_tile(const ColumnView& column)
     return out;
 }
 
-/// Returns one tile of the finest level. Its cells beyond the raster stay empty.
-LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, const TileLevel& level,
-                     std::uint32_t tile_col, std::uint32_t tile_row)
+}  // namespace
+
+std::string rasterized_tile(const Geometry& geometry, const SolidBounds::Impl& raster, const TileLevel& level,
+                            std::uint32_t tile_col, std::uint32_t tile_row)
 {
     const int col0 = int(tile_col * side), row0 = int(tile_row * side);
     const int cols = std::min(int(side), int(level.cols) - col0), rows = std::min(int(side), int(level.rows) - row0);
@@ -58,7 +59,7 @@ LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, 
     if (cols == int(side) && rows == int(side))
         if (const auto same = uniform_column(
                 geometry, {block.x0, block.y0, block.x0 + side * block.cell, block.y0 + side * block.cell}))
-            return uniform_tile(*same);
+            return packed(uniform_tile(*same));
     const CellSpans surfaces(geometry, block);
     const Columns centres(geometry, {raster.x0, raster.y0, level.cell, col0, row0, cols, rows, 0.5}, Surfaces::Filled);
     LooseTile out;
@@ -71,24 +72,13 @@ LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, 
             out.bounds.starts[next] = std::uint32_t(out.bounds.spans.size());
             out.solids.starts[next] = std::uint32_t(out.solids.spans.size());
         }
-    return out;
+    return packed(out);
 }
 
-/// Returns a tile of the next coarser level. Each of its cells is the union of four finer cells, so a gap remains only
-/// where all four have a gap. Solids are not kept.
-LooseTile pooled(const TileStoreBuilder& finer, std::uint32_t tile_col, std::uint32_t tile_row)
+std::string pooled_tile(const std::array<BoundsTile, 4>& tiles)
 {
     LooseTile out;
-    std::array<BoundsTile, 4> tiles;
-    for (std::uint32_t t = 0; t < 4; ++t) {
-        const std::uint32_t col = 2 * tile_col + t % 2, row = 2 * tile_row + t / 2;
-        const TileLevel& fine = finer.levels().back();
-        if (col >= fine.tile_cols || row >= fine.tile_rows) continue;
-        const std::string_view bytes = finer.tile_of_last_level(std::size_t{row} * fine.tile_cols + col);
-        if (bytes.empty()) continue;
-        tiles[t] = BoundsTile(bytes);
-        out.slack = std::max(out.slack, tiles[t].slack);
-    }
+    for (const BoundsTile& tile : tiles) out.slack = std::max(out.slack, tile.slack);
     out.bounds.spans.reserve(BoundsTile::cells);
     std::vector<Interval> joined;
     for (std::uint32_t row = 0; row < side; ++row)
@@ -110,10 +100,14 @@ LooseTile pooled(const TileStoreBuilder& finer, std::uint32_t tile_col, std::uin
             out.bounds.spans.insert(out.bounds.spans.end(), joined.begin(), joined.end());
             out.bounds.starts[row * side + col + 1] = std::uint32_t(out.bounds.spans.size());
         }
-    return out;
+    return packed(out);
 }
 
-}  // namespace
+bool is_whole_in(const Bounds& solid, const Bounds& bounds)
+{
+    return solid.is_empty() ||
+           ((solid.min - bounds.min).head<2>().minCoeff() >= 0 && (bounds.max - solid.max).head<2>().minCoeff() >= 0);
+}
 
 SolidBounds::SolidBounds() : impl_(std::make_shared<const Impl>()) {}
 
@@ -128,16 +122,20 @@ SolidBounds::SolidBounds(const Geometry& geometry, const Bounds& bounds, double 
     const auto count = [&](int axis) {
         return std::uint32_t(std::max(1.0, std::ceil((bounds.max[axis] - bounds.min[axis]) / cell - 1e-9)));
     };
-    const Bounds solid = geometry.bounds();
-    impl->is_whole = solid.is_empty() || ((solid.min - bounds.min).head<2>().minCoeff() >= 0 &&
-                                          (bounds.max - solid.max).head<2>().minCoeff() >= 0);
+    impl->is_whole = is_whole_in(geometry.bounds(), bounds);
     TileStoreBuilder store(XXH64(nullptr, 0, 0));
     for (TileLevel level(cell, count(0), count(1), side);;) {
         const bool is_finest = store.levels().empty();
         std::vector<std::string> tiles(std::size_t{level.tile_cols} * level.tile_rows);
         parallel_for(tiles.size(), threads, is_finest ? progress : Progress{}, [&](std::size_t t) {
             const auto col = std::uint32_t(t % level.tile_cols), row = std::uint32_t(t / level.tile_cols);
-            tiles[t] = packed(is_finest ? rasterized(geometry, *impl, level, col, row) : pooled(store, col, row));
+            const auto finer_tile = [&](std::uint32_t fine_col, std::uint32_t fine_row) {
+                const std::size_t number = std::size_t{fine_row} * store.levels().back().tile_cols + fine_col;
+                const std::string_view bytes = store.tile_of_last_level(number);
+                return bytes.empty() ? BoundsTile() : BoundsTile(bytes);
+            };
+            tiles[t] = is_finest ? rasterized_tile(geometry, *impl, level, col, row)
+                                 : pooled_tile(four_tiles(store.levels().back(), col, row, finer_tile));
         });
         const TileLevel coarser(2 * level.cell, (level.cols + 1) / 2, (level.rows + 1) / 2, side);
         const bool is_coarsest = std::max(level.cols, level.rows) <= 4;

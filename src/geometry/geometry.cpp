@@ -38,12 +38,6 @@ ElementBox box_around(const std::vector<ElementBox>& boxes, std::span<const std:
 
 }  // namespace
 
-void Geometry::Impl::set_tiles(TileStore tiles, std::vector<TileTree> trees)
-{
-    tiles_ = std::move(tiles);
-    trees_ = std::move(trees);
-}
-
 double Geometry::Impl::elements_near(double low_x, double low_y, double high_x, double high_y) const
 {
     constexpr double bytes_per_element = 40;
@@ -52,12 +46,13 @@ double Geometry::Impl::elements_near(double low_x, double low_y, double high_x, 
         return to > from ? std::clamp((std::min(high, to) - std::max(low, from)) / (to - from), 0.0, 1.0) : 1.0;
     };
     double sum = 0;
-    for (std::size_t t = 0; t < trees_.size(); ++t)
-        trees_[t].visit(low_x, low_y, high_x, high_y, [&](std::size_t number) {
-            const ElementBox& box = trees_[t].boxes()[number];
-            sum += double(tiles_.levels()[t].tiles[number].size) * share(low_x, high_x, box.min[0], box.max[0]) *
+    for_each_tree([&](const Forest& forest, std::size_t t) {
+        forest.trees[t].visit(low_x, low_y, high_x, high_y, [&](std::size_t number) {
+            const ElementBox& box = forest.trees[t].boxes()[number];
+            sum += double(forest.tiles.levels()[t].tiles[number].size) * share(low_x, high_x, box.min[0], box.max[0]) *
                    share(low_y, high_y, box.min[1], box.max[1]);
         });
+    });
     return sum / bytes_per_element;
 }
 
@@ -68,40 +63,47 @@ Geometry::Geometry(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 std::uint64_t Geometry::element_count() const { return impl_->elements; }
 const Bounds& Geometry::bounds() const { return impl_->bounds; }
 const std::vector<Part>& Geometry::parts() const { return impl_->parts; }
+bool Geometry::is_removed(std::size_t part) const { return !impl_->is_removed.empty() && impl_->is_removed[part] != 0; }
 const LabelCounts& Geometry::labels() const { return impl_->labels; }
+
+std::shared_ptr<const Forest> forest_of(const Scene& scene, const ElementNumbers& first, int threads)
+{
+    auto out = std::make_shared<Forest>();
+    out->parts = first.part + scene.parts.size();
+    const std::size_t elements = element_count(scene);
+    if (elements == 0) return out;
+    std::vector<ElementBox> boxes(elements);
+    parallel_for(elements, threads, {},
+                 [&](std::size_t e) { boxes[e] = widened(element_bounds(scene, std::uint32_t(e))); });
+    TileStoreBuilder store(0);
+    for (std::vector<std::uint32_t>& group : groups_by_size(boxes, scene.bounds())) {
+        const std::vector<std::uint32_t> order = packed_order(boxes, std::move(group), threads);
+        std::vector<std::string> tiles((order.size() + TileBoxes::most - 1) / TileBoxes::most);
+        std::vector<ElementBox> around(tiles.size());
+        parallel_for(tiles.size(), threads, {}, [&](std::size_t t) {
+            const std::size_t begin = t * TileBoxes::most;
+            const auto in_tile = std::span(order).subspan(begin, std::min(TileBoxes::most, order.size() - begin));
+            tiles[t] = tile_of(scene, boxes, in_tile, first);
+            around[t] = box_around(boxes, in_tile);
+        });
+        TileLevel level(1, std::uint32_t(tiles.size()), 1, 1);
+        store.add(std::move(level), std::move(tiles), threads);
+        out->trees.emplace_back(std::move(around));
+    }
+    out->tiles = store.build();
+    return out;
+}
 
 Geometry::Geometry(const Scene& scene, int threads)
 {
     auto impl = std::make_shared<Impl>();
-    const auto elements = std::uint32_t(spawnfield::element_count(scene));
-    impl->elements = elements;
+    impl->elements = spawnfield::element_count(scene);
     impl->parts = scene.parts;
     impl->labels = scene.count_labels();
-    impl->has_filled_meshes = std::any_of(scene.pieces.begin(), scene.pieces.end(),
-                                          [](const Piece& p) { return p.solid; });
-    if (elements > 0) {
-        std::vector<ElementBox> boxes(elements);
-        parallel_for(elements, threads, {},
-                     [&](std::size_t e) { boxes[e] = widened(element_bounds(scene, std::uint32_t(e))); });
-        impl->bounds = scene.bounds();
-        TileStoreBuilder store(0);
-        std::vector<TileTree> trees;
-        for (std::vector<std::uint32_t>& group : groups_by_size(boxes, impl->bounds)) {
-            const std::vector<std::uint32_t> order = packed_order(boxes, std::move(group), threads);
-            std::vector<std::string> tiles((order.size() + TileBoxes::most - 1) / TileBoxes::most);
-            std::vector<ElementBox> around(tiles.size());
-            parallel_for(tiles.size(), threads, {}, [&](std::size_t t) {
-                const std::size_t first = t * TileBoxes::most;
-                const auto in_tile = std::span(order).subspan(first, std::min(TileBoxes::most, order.size() - first));
-                tiles[t] = tile_of(scene, boxes, in_tile);
-                around[t] = box_around(boxes, in_tile);
-            });
-            TileLevel level(1, std::uint32_t(tiles.size()), 1, 1);
-            store.add(std::move(level), std::move(tiles), threads);
-            trees.emplace_back(std::move(around));
-        }
-        impl->set_tiles(store.build(), std::move(trees));
-    }
+    impl->has_filled_meshes = has_filled_meshes(scene);
+    if (impl->elements > 0) impl->bounds = scene.bounds();
+    impl->next = {std::uint32_t(impl->elements), std::uint32_t(scene.pieces.size()), std::uint32_t(scene.parts.size())};
+    impl->forests = {forest_of(scene, {}, threads)};
     impl_ = std::move(impl);
 }
 

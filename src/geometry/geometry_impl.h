@@ -6,22 +6,47 @@
 
 #include <spawnfield/geometry.h>
 
+#include <memory>
+
 namespace spawnfield {
 
+/// Tiles with the trees that find them. Level k of the store has the tiles of tree k.
+struct Forest {
+    TileStore tiles;
+    std::vector<TileTree> trees;
+    std::size_t parts = 0;  ///< numbers of parts in the tiles are below this
+
+    /// Returns the bytes of a tile. Throws FileError for a damaged tile of a file.
+    std::string_view bytes_of(std::size_t tree, std::size_t tile) const
+    {
+        return tiles.open(tree, tile, [this](std::string_view bytes) { return is_consistent_tile(bytes, parts); });
+    }
+};
+
+/// A scene has one forest. A changed one (changed_geometry.h) has the forest of the unchanged scene, and one for each
+/// time that parts were added.
 struct Geometry::Impl {
-    std::uint64_t elements = 0;
-    Bounds bounds;            ///< of all elements
-    std::vector<Part> parts;  ///< of the scene, in its order
+    std::uint64_t elements = 0;  ///< without those of removed parts
+    Bounds bounds;               ///< of all elements
+    /// Of the scene, in its order. Removed parts keep their place, with all counts 0; added parts follow.
+    std::vector<Part> parts;
     LabelCounts labels{};
     bool has_filled_meshes = false;
+    std::vector<std::shared_ptr<const Forest>> forests;
+    ElementNumbers next;                   ///< all numbers in the tiles are below these
+    std::vector<std::uint8_t> is_removed;  ///< for each part; empty if no part was removed
 
-    /// Gives the geometry its tiles. Each level of the store has the tiles of one tree.
-    void set_tiles(TileStore tiles, std::vector<TileTree> trees);
-    const TileStore& tiles() const { return tiles_; }
-    const std::vector<TileTree>& trees() const { return trees_; }
+    /// Says that most tiles will be needed (see TileStore).
+    void expect_all() const
+    {
+        for (const auto& forest : forests) forest->tiles.expect_all();
+    }
 
-    /// Returns a tile. Throws FileError for a damaged tile of a file.
-    Tile open(std::size_t tree, std::size_t tile) const { return Tile(bytes_of(tree, tile)); }
+    /// Returns a tile, in which elements of removed parts are not alive. Throws FileError for a damaged tile of a file.
+    Tile open(const Forest& forest, std::size_t tree, std::size_t tile) const
+    {
+        return alive(Tile(forest.bytes_of(tree, tile)));
+    }
 
     /// Calls visit(tile, element) once for each element whose box meets the closed rectangle.
     template <class Visit>
@@ -38,17 +63,21 @@ struct Geometry::Impl {
     template <class Visit>
     void visit_tiles(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
     {
-        for (std::size_t t = 0; t < trees_.size(); ++t)
-            trees_[t].visit(low_x, low_y, high_x, high_y,
-                            [&](std::size_t number) { visit(open(t, number), trees_[t].boxes()[number]); });
+        for_each_tree([&](const Forest& forest, std::size_t t) {
+            const TileTree& tree = forest.trees[t];
+            tree.visit(low_x, low_y, high_x, high_y,
+                       [&](std::size_t number) { visit(open(forest, t, number), tree.boxes()[number]); });
+        });
     }
 
     /// The same for a closed box.
     template <class Visit>
     void visit_tiles(const Bounds& space, const Visit& visit) const
     {
-        for (std::size_t t = 0; t < trees_.size(); ++t)
-            trees_[t].visit(space, [&](std::size_t number) { visit(open(t, number), trees_[t].boxes()[number]); });
+        for_each_tree([&](const Forest& forest, std::size_t t) {
+            const TileTree& tree = forest.trees[t];
+            tree.visit(space, [&](std::size_t number) { visit(open(forest, t, number), tree.boxes()[number]); });
+        });
     }
 
     /// Does the same as visit_tiles, for callers that read most of each tile: while a tile is visited, the processor
@@ -57,19 +86,20 @@ struct Geometry::Impl {
     void visit_whole_tiles(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
     {
         constexpr std::size_t line = 64, none = std::size_t(-1);  // bytes of a cache line; no tile
-        for (std::size_t t = 0; t < trees_.size(); ++t) {
-            std::size_t next = none;
+        for_each_tree([&](const Forest& forest, std::size_t t) {
+            const TileTree& tree = forest.trees[t];
+            std::size_t next_tile = none;
             const auto visit_next = [&] {
-                if (next != none) visit(open(t, next), trees_[t].boxes()[next]);
+                if (next_tile != none) visit(open(forest, t, next_tile), tree.boxes()[next_tile]);
             };
-            trees_[t].visit(low_x, low_y, high_x, high_y, [&](std::size_t number) {
-                const std::string_view bytes = bytes_of(t, number);
+            tree.visit(low_x, low_y, high_x, high_y, [&](std::size_t number) {
+                const std::string_view bytes = forest.bytes_of(t, number);
                 for (std::size_t at = 0; at < bytes.size(); at += line) __builtin_prefetch(bytes.data() + at);
                 visit_next();
-                next = number;
+                next_tile = number;
             });
             visit_next();
-        }
+        });
     }
 
     /// Calls visit(tile, element) once for each element whose box meets the closed rectangle, and for a few others near
@@ -86,15 +116,23 @@ struct Geometry::Impl {
     /// the share of its area in the rectangle.
     double elements_near(double low_x, double low_y, double high_x, double high_y) const;
 
-private:
-    std::string_view bytes_of(std::size_t tree, std::size_t tile) const
+    /// Calls visit(forest, tree) for each tree of each forest.
+    template <class Visit>
+    void for_each_tree(const Visit& visit) const
     {
-        return tiles_.open(tree, tile,
-                           [this](std::string_view bytes) { return is_consistent_tile(bytes, parts.size()); });
+        for (const auto& forest : forests)
+            for (std::size_t t = 0; t < forest->trees.size(); ++t) visit(*forest, t);
     }
 
-    TileStore tiles_;
-    std::vector<TileTree> trees_;
+private:
+    Tile alive(Tile tile) const
+    {
+        if (!is_removed.empty()) tile.keep([this](std::uint32_t part) { return is_removed[part] == 0; });
+        return tile;
+    }
 };
+
+/// Returns the tiles of a scene's elements. Their numbers begin at `first`.
+std::shared_ptr<const Forest> forest_of(const Scene& scene, const ElementNumbers& first, int threads);
 
 }  // namespace spawnfield

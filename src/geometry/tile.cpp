@@ -3,6 +3,8 @@
 #include "base/tile_store.h"
 #include "scene/elements.h"
 
+#include <functional>
+
 namespace spawnfield {
 namespace {
 
@@ -18,8 +20,9 @@ std::span<const T> take(const char*& next, std::size_t count)
 /// Builds the bytes of one tile.
 class TileBuilder {
 public:
-    TileBuilder(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements)
-        : scene_(scene), boxes_(boxes), elements_(elements)
+    TileBuilder(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements,
+                const ElementNumbers& first)
+        : scene_(scene), boxes_(boxes), elements_(elements), first_(first)
     {
     }
 
@@ -45,8 +48,8 @@ public:
         for (const std::uint32_t vertex : vertices_) put(scene_.vertices[vertex]);
         for (std::size_t e = triangles_; e < elements_.size(); ++e) put(packed_primitive(elements_[e]));
         for (const std::uint32_t piece : pieces_) put(packed_piece(piece));
-        for (const std::uint32_t element : elements_) put(element);
-        for (std::size_t e = 0; e < triangles_; ++e) put(packed_triangle(elements_[e]));
+        for (const std::uint32_t element : elements_) put(first_.element + element);
+        for (std::size_t e = 0; e < triangles_; ++e) put(packed_triangle(e));
         return std::move(out_);
     }
 
@@ -57,19 +60,33 @@ private:
         triangles_ = std::size_t(std::partition_point(elements_.begin(), elements_.end(),
                                                       [&](std::uint32_t e) { return is_triangle(scene_, e); }) -
                                  elements_.begin());
+        std::vector<std::uint32_t> corners, pieces;
         for (std::size_t e = 0; e < triangles_; ++e) {
-            for (const std::uint32_t corner : scene_.triangles[elements_[e]]) vertices_.push_back(corner);
-            pieces_.push_back(scene_.triangle_pieces[elements_[e]]);
+            for (const std::uint32_t corner : scene_.triangles[elements_[e]]) corners.push_back(corner);
+            pieces.push_back(scene_.triangle_pieces[elements_[e]]);
         }
-        for (auto* list : {&vertices_, &pieces_}) {
-            std::sort(list->begin(), list->end());
-            list->erase(std::unique(list->begin(), list->end()), list->end());
-        }
+        vertices_ = distinct(corners, corner_numbers_);
+        pieces_ = distinct(pieces, piece_numbers_);
     }
 
-    static std::uint8_t number_in(const std::vector<std::uint32_t>& sorted, std::uint32_t value)
+    /// Returns the distinct values, ascending. numbers[k] becomes the place of values[k] among them. There are at most
+    /// 3 * TileBoxes::most values.
+    static std::vector<std::uint32_t> distinct(const std::vector<std::uint32_t>& values,
+                                               std::vector<std::uint8_t>& numbers)
     {
-        return std::uint8_t(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
+        numbers.assign(values.size(), 0);
+        const bool all_equal = std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end();
+        if (all_equal && !values.empty()) return {values.front()};  // most often the pieces
+        std::vector<std::uint64_t> sorted;  // value and place in one number, which is sorted fast
+        for (std::size_t k = 0; k < values.size(); ++k) sorted.push_back(std::uint64_t{values[k]} << 8 | k);
+        std::sort(sorted.begin(), sorted.end());
+        std::vector<std::uint32_t> out;
+        for (const std::uint64_t both : sorted) {
+            const auto value = std::uint32_t(both >> 8);
+            if (out.empty() || out.back() != value) out.push_back(value);
+            numbers[both & 255] = std::uint8_t(out.size() - 1);
+        }
+        return out;
     }
 
     TileScale scale_along(std::size_t axis) const
@@ -82,13 +99,12 @@ private:
         return {low, high > low ? 255 / (high - low) : 0};
     }
 
-    TileTriangle packed_triangle(std::uint32_t element) const
+    TileTriangle packed_triangle(std::size_t in_tile) const
     {
         TileTriangle out{};
-        for (std::size_t corner = 0; corner < 3; ++corner)
-            out.corners[corner] = number_in(vertices_, scene_.triangles[element][corner]);
-        out.piece = number_in(pieces_, scene_.triangle_pieces[element]);
-        out.label = scene_.triangle_labels[element];
+        for (std::size_t corner = 0; corner < 3; ++corner) out.corners[corner] = corner_numbers_[3 * in_tile + corner];
+        out.piece = piece_numbers_[in_tile];
+        out.label = scene_.triangle_labels[elements_[in_tile]];
         return out;
     }
 
@@ -97,8 +113,8 @@ private:
         const Piece& from = scene_.pieces[piece];
         TilePiece out{};
         out.bottom = from.bottom;
-        out.piece = piece;
-        out.part = from.part;
+        out.piece = first_.piece + piece;
+        out.part = first_.part + from.part;
         out.solid = from.solid;
         out.open = from.open;
         out.sides_up = from.sides_up;
@@ -113,7 +129,7 @@ private:
         Vec3::Map(out.position.data()) = from.shape.pose.position;
         Mat3::Map(out.rotation.data()) = from.shape.pose.rotation;
         out.box = boxes_[element];
-        out.part = from.part;
+        out.part = first_.part + from.part;
         out.kind = from.shape.kind;
         out.label = from.label;
         return out;
@@ -128,8 +144,10 @@ private:
     const Scene& scene_;
     const std::vector<ElementBox>& boxes_;
     const std::span<const std::uint32_t> elements_;
+    const ElementNumbers& first_;
     std::size_t triangles_ = 0;
     std::vector<std::uint32_t> vertices_, pieces_;
+    std::vector<std::uint8_t> corner_numbers_, piece_numbers_;  ///< of the corners and the triangles of the tile
     std::string out_;
 };
 
@@ -152,6 +170,7 @@ Tile::Tile(std::string_view bytes)
     pieces = take<TilePiece>(next, head->pieces);
     ids = take<std::uint32_t>(next, elements());
     triangles = take<TileTriangle>(next, head->triangles);
+    alive = elements() < TileBoxes::most ? (std::uint64_t{1} << elements()) - 1 : ~std::uint64_t{0};
 }
 
 bool is_consistent_tile(std::string_view bytes, std::size_t parts)
@@ -175,9 +194,10 @@ bool is_consistent_tile(std::string_view bytes, std::size_t parts)
     return true;
 }
 
-std::string tile_of(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements)
+std::string tile_of(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements,
+                    const ElementNumbers& first)
 {
-    return TileBuilder(scene, boxes, elements).build();
+    return TileBuilder(scene, boxes, elements, first).build();
 }
 
 }  // namespace spawnfield

@@ -107,6 +107,11 @@ struct TileBoxes {
 };
 static_assert(sizeof(TileBoxes) == 384);
 
+/// Numbers of the first element, piece and part of a scene whose tiles are added to those of another scene.
+struct ElementNumbers {
+    std::uint32_t element = 0, piece = 0, part = 0;
+};
+
 /// A view of a tile's bytes as typed arrays. A tile has at most 64 elements that lie near each other. They are
 /// numbered: first its triangles, then its primitives, both in the order of the scene.
 struct Tile {
@@ -117,6 +122,8 @@ struct Tile {
     std::span<const TilePiece> pieces;
     std::span<const std::uint32_t> ids;  ///< the elements' numbers in the scene, ascending
     std::span<const TileTriangle> triangles;
+    /// A bit for each element that exists. Elements of removed parts (changed_geometry.h) are not alive.
+    std::uint64_t alive;
 
     /// Reads the head and finds the arrays behind it. The head's counts must fit the bytes (see tile_size).
     explicit Tile(std::string_view bytes);
@@ -130,6 +137,13 @@ struct Tile {
     }
     const TilePiece& piece(std::uint32_t triangle) const { return pieces[triangles[triangle].piece]; }
     const TilePrimitive& primitive(std::uint32_t element) const { return primitives[element - head->triangles]; }
+    /// Returns a number that orders the elements of all tiles as in their scene: triangles first. The order is the same
+    /// in a changed scene as in the scene that was baked anew.
+    std::uint64_t order(std::uint32_t element) const
+    {
+        constexpr std::uint64_t behind_triangles = std::uint64_t{1} << 32;
+        return ids[element] + (is_triangle(element) ? 0 : behind_triangles);
+    }
     Label label(std::uint32_t element) const
     {
         return is_triangle(element) ? triangles[element].label : primitive(element).label;
@@ -148,13 +162,24 @@ struct Tile {
         const auto [a, b, c] = corners(element);
         return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
     }
+    /// Elements of other parts are not alive from now on.
+    template <class IsKept>
+    void keep(const IsKept& is_kept)
+    {
+        const auto all_kept = [&](const auto& list) {
+            return std::all_of(list.begin(), list.end(), [&](const auto& item) { return is_kept(item.part); });
+        };
+        if (all_kept(pieces) && all_kept(primitives)) return;
+        for (std::uint32_t e = 0; e < elements(); ++e)
+            if (!is_kept(part(e))) alive &= ~(std::uint64_t{1} << e);
+    }
     ElementBox box(std::uint32_t element) const
     {
         return is_triangle(element) ? widened(bounds(element)) : primitive(element).box;
     }
 
-    /// Returns a bit for each element whose box may meet the closed rectangle. If it is 0, the box certainly does not
-    /// meet it.
+    /// Returns a bit for each element that is alive and whose box may meet the closed rectangle. If it is 0, the box
+    /// certainly does not meet it.
     std::uint64_t near(double low_x, double low_y, double high_x, double high_y) const
     {
         return marks<2>({low_x, low_y}, {high_x, high_y});
@@ -189,8 +214,7 @@ private:
             std::memcpy(&eight, meets.data() + e, sizeof eight);
             out |= (eight * 0x0102040810204080) >> 56 << e;
         }
-        const std::uint32_t count = elements();
-        return count < 64 ? out & ((std::uint64_t{1} << count) - 1) : out;
+        return out & alive;
     }
 };
 
@@ -201,7 +225,9 @@ std::uint64_t tile_size(const TileHead& head);
 bool is_consistent_tile(std::string_view bytes, std::size_t parts);
 
 /// Returns the bytes of a tile with these elements of the scene, which must be ascending; at most TileBoxes::most.
-/// `boxes` has the boxes of all elements of the scene.
-std::string tile_of(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements);
+/// `boxes` has the boxes of all elements of the scene. The numbers of elements, pieces and parts in the tile are those
+/// in the scene plus `first`.
+std::string tile_of(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements,
+                    const ElementNumbers& first);
 
 }  // namespace spawnfield

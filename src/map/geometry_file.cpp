@@ -18,8 +18,9 @@ std::string written_head(const Geometry::Impl& geometry)
     for (const double limit : geometry.bounds.min) out.put(limit);
     for (const double limit : geometry.bounds.max) out.put(limit);
     out.put(std::uint32_t(geometry.has_filled_meshes));
-    put_levels(out, geometry.tiles().levels());
-    for (const TileTree& tree : geometry.trees()) out.put_array(tree.boxes());
+    const Forest& forest = *geometry.forests.front();
+    put_levels(out, forest.tiles.levels());
+    for (const TileTree& tree : forest.trees) out.put_array(tree.boxes());
     for (const LabelCount& count : geometry.labels) {
         out.put(count.triangles);
         out.put(count.primitives);
@@ -68,7 +69,7 @@ Geometry of_version_2(const TileStore& tiles, const Geometry::Impl& head)
 
 ListedFile write_geometry(const std::filesystem::path& file, const Geometry& geometry)
 {
-    return write_tiled(file, geometry_format, written_head(geometry.impl()), geometry.impl().tiles());
+    return write_tiled(file, geometry_format, written_head(geometry.impl()), geometry.impl().forests.front()->tiles);
 }
 
 Geometry open_geometry(const std::filesystem::path& file, const std::string& head_checksum)
@@ -96,7 +97,10 @@ Geometry open_geometry(const std::filesystem::path& file, const std::string& hea
         if (trees[tree].boxes().size() != entries.size() || std::any_of(entries.begin(), entries.end(), is_empty))
             tiles.fail_inconsistent();
     }
-    impl->set_tiles(std::move(tiles), std::move(trees));
+    // The numbers of pieces are not in the head; each piece has at least one triangle.
+    const auto elements = std::uint32_t(impl->elements), parts = std::uint32_t(impl->parts.size());
+    impl->next = {elements, elements, parts};
+    impl->forests = {std::make_shared<const Forest>(Forest{std::move(tiles), std::move(trees), parts})};
     return Geometry(std::move(impl));
 }
 

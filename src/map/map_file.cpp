@@ -1,5 +1,7 @@
 #include "map/bounds_file.h"
+#include "map/changed_terrain.h"
 #include "map/geometry_file.h"
+#include "map/map_change.h"
 #include "map/map_yaml.h"
 #include "map/terrain_file.h"
 
@@ -36,6 +38,8 @@ Map read_map(const fs::path& folder)
 
 TerrainMap read_terrain(const Map& map)
 {
+    if (map.change)
+        return changed_terrain(read_terrain(map.change->base), map.geometry, map.change->boxes, map.z_limits);
     if (map.folder.empty())
         return rasterize_terrain(map.geometry, frame_around(map.bounds, map.resolution), 0, {}, map.z_limits);
     const MapYaml yaml = read_map_yaml(map.folder);

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "column/columns.h"
 #include "column/uniform_column.h"
+#include "map/changed_terrain.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/terrain.h>
@@ -24,6 +25,16 @@ const std::string& empty_tile()
     return stream;
 }
 
+/// Returns whether a tile is all NaN. Another version of zlib may have written other bytes than those of empty_tile().
+bool is_empty(const std::string& stream)
+{
+    if (stream == empty_tile()) return true;
+    if (stream.size() > 2 * empty_tile().size()) return false;
+    std::vector<float> values(page_tile_cells);
+    inflate_floats(stream, TerrainMap::tile, values);
+    return std::all_of(values.begin(), values.end(), [](float value) { return std::isnan(value); });
+}
+
 /// The pages of one tile. A page is made when the first height is set.
 template <class Page>
 struct TilePages {
@@ -41,6 +52,24 @@ public:
     }
 
     TilePages<std::string> run()
+    {
+        scan();
+        TilePages<std::string> out;
+        for (const auto& layer : pages_.height) out.height.push_back(deflated(layer));
+        if (!pages_.water.empty()) out.water = deflated(pages_.water);
+        if (!pages_.obstacle.empty()) out.obstacle = deflated(pages_.obstacle);
+        return out;
+    }
+
+    /// Returns the largest number of layers in a cell of the tile.
+    std::size_t count_layers()
+    {
+        scan();
+        return pages_.height.size();
+    }
+
+private:
+    void scan()
     {
         constexpr int part = 64;  // cells; the columns of part x part cells stay in a core's cache
         const int first_row = frame_.rows - row0_ - rows_;
@@ -61,14 +90,8 @@ public:
                 for (int j = 0; j < rows; ++j)
                     for (int i = 0; i < cols; ++i) add_cell(rows_ - 1 - j0 - j, i0 + i, centres.at(i, j));
             }
-        TilePages<std::string> out;
-        for (const auto& layer : pages_.height) out.height.push_back(deflated(layer));
-        if (!pages_.water.empty()) out.water = deflated(pages_.water);
-        if (!pages_.obstacle.empty()) out.obstacle = deflated(pages_.obstacle);
-        return out;
     }
 
-private:
     void add_cell(int row, int col, const ColumnView& column)
     {
         const std::size_t cell = std::size_t(row) * TerrainMap::tile + std::size_t(col);
@@ -173,6 +196,56 @@ HeightImage highest_within(const TerrainMap& terrain, const ZRange& z)
     return out;
 }
 
+namespace {
+
+/// Returns the map of these tiles, row after row.
+TerrainMap terrain_of(const GridFrame& frame, std::vector<TilePages<std::string>> tiles)
+{
+    TerrainMap out;
+    out.frame = frame;
+    std::size_t layers = 1;  // one page of heights is written even without terrain
+    for (const auto& tile : tiles) layers = std::max(layers, tile.height.size());
+    for (std::size_t k = 0; k < layers; ++k)
+        add_page("height." + std::to_string(k), tiles, true, out,
+                 [&](auto& tile) { return k < tile.height.size() ? &tile.height[k] : nullptr; });
+    add_page("water", tiles, false, out, [](auto& tile) { return &tile.water; });
+    add_page("obstacle", tiles, false, out, [](auto& tile) { return &tile.obstacle; });
+    return out;
+}
+
+/// Returns the pages of one tile of a map.
+TilePages<std::string> tile_of(const TerrainMap& terrain, std::size_t tile)
+{
+    const auto stream = [&](const std::string& name) {
+        const TerrainMap::Page* const page = terrain.find(name);
+        return page == nullptr || is_empty(page->tiles[tile]) ? std::string() : page->tiles[tile];
+    };
+    TilePages<std::string> out{.height = {}, .water = stream("water"), .obstacle = stream("obstacle")};
+    for (int k = 0; k < terrain.layers(); ++k) {
+        out.height.push_back(stream("height." + std::to_string(k)));
+        if (out.height.back().empty()) {  // lower layers have no heights either
+            out.height.pop_back();
+            break;
+        }
+    }
+    return out;
+}
+
+/// Returns whether a tile of a map meets a box of a change, or comes within a cell of one.
+bool may_change(const TerrainMap& terrain, std::size_t tile, std::span<const ElementBox> boxes)
+{
+    const GridFrame& frame = terrain.frame;
+    const int row = int(tile) / terrain.tile_cols(), col = int(tile) % terrain.tile_cols();
+    const double side = TerrainMap::tile * frame.cell, x = frame.x0 + col * side,
+                 y = frame.y0 + frame.rows * frame.cell - row * side, pad = frame.cell;
+    return std::any_of(boxes.begin(), boxes.end(), [&](const ElementBox& box) {
+        return box.min[0] <= x + side + pad && box.max[0] >= x - pad && box.min[1] <= y + pad &&
+               box.max[1] >= y - side - pad;
+    });
+}
+
+}  // namespace
+
 TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads, const Progress& progress,
                              const ZRange& z_limits)
 {
@@ -182,14 +255,39 @@ TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, i
     parallel_for(tiles.size(), threads, progress, [&](std::size_t t) {
         tiles[t] = TileRaster(geometry, frame, z_limits, int(t) / out.tile_cols(), int(t) % out.tile_cols()).run();
     });
-    std::size_t layers = 1;  // one page of heights is written even without terrain
-    for (const auto& tile : tiles) layers = std::max(layers, tile.height.size());
-    for (std::size_t k = 0; k < layers; ++k)
-        add_page("height." + std::to_string(k), tiles, true, out,
-                 [&](auto& tile) { return k < tile.height.size() ? &tile.height[k] : nullptr; });
-    add_page("water", tiles, false, out, [](auto& tile) { return &tile.water; });
-    add_page("obstacle", tiles, false, out, [](auto& tile) { return &tile.obstacle; });
-    return out;
+    return terrain_of(frame, std::move(tiles));
+}
+
+TerrainMap changed_terrain(const TerrainMap& base, const Geometry& geometry, std::span<const ElementBox> boxes,
+                           const ZRange& z_limits, int threads)
+{
+    const int cols = base.tile_cols();
+    std::vector<TilePages<std::string>> tiles(std::size_t(base.tile_rows()) * std::size_t(cols));
+    parallel_for(tiles.size(), threads, {}, [&](std::size_t t) {
+        tiles[t] = may_change(base, t, boxes)
+                       ? TileRaster(geometry, base.frame, z_limits, int(t) / cols, int(t) % cols).run()
+                       : tile_of(base, t);
+    });
+    return terrain_of(base.frame, std::move(tiles));
+}
+
+int changed_layers(const TerrainMap& base, const Geometry& geometry, std::span<const ElementBox> boxes,
+                   const ZRange& z_limits, int threads)
+{
+    const int cols = base.tile_cols();
+    std::vector<std::size_t> layers(std::size_t(base.tile_rows()) * std::size_t(cols));
+    parallel_for(layers.size(), threads, {}, [&](std::size_t t) {
+        layers[t] = may_change(base, t, boxes)
+                        ? TileRaster(geometry, base.frame, z_limits, int(t) / cols, int(t) % cols).count_layers()
+                        : tile_of(base, t).height.size();
+    });
+    return int(*std::max_element(layers.begin(), layers.end()));
+}
+
+int count_layers(const TerrainMap& terrain)
+{
+    const TerrainMap::Page* const top = terrain.find("height.0");
+    return top == nullptr || std::all_of(top->tiles.begin(), top->tiles.end(), is_empty) ? 0 : terrain.layers();
 }
 
 }  // namespace spawnfield

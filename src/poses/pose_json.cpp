@@ -11,6 +11,7 @@ Json json_head(const std::string& command, const Map& map, const Robot& robot, J
     out["version"] = version();
     out["command"] = command;
     out["map"] = {{"name", map.name}, {"hash", map.hash}};
+    if (!map.changes.empty()) out["map"]["changes"] = map.changes;
     if (!robot.name.empty()) out["robot"] = robot.name;
     for (const auto& [joint, value] : robot.joints) out["joints"][joint] = value;
     if (robot.mesh_parts != 1) out["mesh_parts"] = robot.mesh_parts;

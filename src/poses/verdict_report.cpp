@@ -207,6 +207,7 @@ private:
         push_property("version", version());
         push_property("map", report_.judge.map().name);
         push_property("map_hash", report_.judge.map().hash);
+        for (const std::string& change : report_.judge.map().changes) push_property("map_change", change);
         push_property("robot", robot_name());
         const Json settings = settings_json(report_);
         for (const auto& [name, value] : settings.items())

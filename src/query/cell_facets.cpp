@@ -79,13 +79,18 @@ CellFacets::CellFacets(const Geometry& geometry, const Rect& cell) : cell_(cell)
                                  else
                                      add_primitive(tile, element);
                              });
-    if (has_too_many || !has_filled_terrain_) return;
-    // The other faces of filled meshes count too, because they separate the inside from the outside.
-    geometry.impl().visit_in(cell.low_x, cell.low_y, cell.high_x, cell.high_y,
-                             [&](const Tile& tile, std::uint32_t element) {
-                                 has_too_many = has_too_many || all.size() >= most_facets;
-                                 if (tile.is_triangle(element) && !has_too_many) add_triangle(tile, element, true);
-                             });
+    if (!has_too_many && has_filled_terrain_) {
+        // The other faces of filled meshes count too, because they separate the inside from the outside.
+        geometry.impl().visit_in(cell.low_x, cell.low_y, cell.high_x, cell.high_y,
+                                 [&](const Tile& tile, std::uint32_t element) {
+                                     has_too_many = has_too_many || all.size() >= most_facets;
+                                     if (tile.is_triangle(element) && !has_too_many) add_triangle(tile, element, true);
+                                 });
+    }
+    if (has_too_many) return;
+    // The rounding of proofs depends on the order, and the order of tiles is another one in a changed scene.
+    const auto is_earlier = [](const Facet& l, const Facet& r) { return l.order < r.order; };
+    if (!std::is_sorted(all.begin(), all.end(), is_earlier)) std::stable_sort(all.begin(), all.end(), is_earlier);
 }
 
 void CellFacets::set_plane(const Vec3& a, const Vec3& normal, const Interval& limits, Facet& out) const
@@ -113,6 +118,7 @@ void CellFacets::add_triangle(const Tile& tile, std::uint32_t element, bool othe
     const TileTriangle& triangle = tile.triangles[element];
     const TilePiece& piece = tile.piece(element);
     Facet out;
+    out.order = tile.order(element);
     out.filled = piece.solid != 0;
     out.open = piece.open != 0;
     out.piece = piece.piece;
@@ -146,10 +152,11 @@ void CellFacets::add_primitive(const Tile& tile, std::uint32_t element)
     if (label != Label::Terrain && label != Label::Water) return;
     const Shape shape = tile.primitive(element).shape();
     if (shape.kind == ShapeKind::Box) {
-        add_box(shape, label);
+        add_box(shape, label, tile.order(element));
         return;
     }
     Facet out;
+    out.order = tile.order(element);
     out.terrain = label == Label::Terrain;
     out.water = label == Label::Water;
     const ElementBox box = tile.box(element);
@@ -172,7 +179,7 @@ void CellFacets::add_primitive(const Tile& tile, std::uint32_t element)
 }
 
 /// Adds the sides of a box that are visible from above.
-void CellFacets::add_box(const Shape& box, Label label)
+void CellFacets::add_box(const Shape& box, Label label, std::uint64_t order)
 {
     for (int axis = 0; axis < 3; ++axis) {
         const int next = (axis + 1) % 3, last = (axis + 2) % 3;
@@ -183,6 +190,7 @@ void CellFacets::add_box(const Shape& box, Label label)
         const Vec3 middle = box.pose.position + box.size[axis] / 2 * normal;
         const Vec3 u = box.size[next] / 2 * turn.col(next), v = box.size[last] / 2 * turn.col(last);
         Facet out;
+        out.order = order;
         out.terrain = label == Label::Terrain;
         out.water = label == Label::Water;
         Interval limits{inf, -inf};

@@ -84,6 +84,7 @@ struct Facet {
     bool open = false;
     bool crossed = false;  ///< the vertical line through the cell's centre crosses it
     std::uint32_t piece = 0;
+    std::uint64_t order = 0;  ///< Tile::order() of its element
 
     double at(double x, double y) const { return height + slope.x() * x + slope.y() * y; }
 };
@@ -102,7 +103,7 @@ private:
     void set_plane(const Vec3& a, const Vec3& normal, const Interval& limits, Facet& out) const;
     void add_triangle(const Tile& tile, std::uint32_t element, bool other_filled);
     void add_primitive(const Tile& tile, std::uint32_t element);
-    void add_box(const Shape& box, Label label);
+    void add_box(const Shape& box, Label label, std::uint64_t order);
 
     const Rect cell_;
     const SmallPolygon corners_;

@@ -29,15 +29,16 @@ std::vector<PartsNear::Element> PartsNear::elements_of(const Geometry& geometry,
     std::vector<Element> found;
     std::vector<ElementBox> boxes;
     const Geometry::Impl& impl = geometry.impl();
-    for (std::size_t tree = 0; tree < impl.trees().size(); ++tree)
-        for (std::size_t number = 0; number < impl.trees()[tree].boxes().size(); ++number) {
-            const Tile tile = impl.open(tree, number);
+    impl.for_each_tree([&](const Forest& forest, std::size_t tree) {
+        for (std::size_t number = 0; number < forest.trees[tree].boxes().size(); ++number) {
+            const Tile tile = impl.open(forest, tree, number);
             for (std::uint32_t k = 0; k < tile.elements(); ++k) {
                 if (parts[tile.part(k)] == 0) continue;
-                found.push_back({std::uint32_t(tree), std::uint32_t(number), k, tile.box(k)});
+                found.push_back({&forest, std::uint32_t(tree), std::uint32_t(number), k, tile.box(k)});
                 boxes.push_back(found.back().box);
             }
         }
+    });
     std::vector<std::uint32_t> order(found.size());
     std::iota(order.begin(), order.end(), 0u);
     std::vector<Element> out;
@@ -80,7 +81,8 @@ std::optional<Vec3> PartsNear::way_from(const std::vector<Convex>& bodies, const
         box.min -= position;
         box.max -= position;
         if (!(distance_between(all, box) < least)) return;
-        const Convex solid = body_of(geometry_.impl().open(element.tree, element.tile), element.element, position);
+        const Tile tile = geometry_.impl().open(*element.forest, element.tree, element.tile);
+        const Convex solid = body_of(tile, element.element, position);
         for (std::size_t k = 0; k < bodies.size(); ++k) {
             if (!(distance_between(boxes[k], box) < least)) continue;
             const Vec3 way = shortest_way(bodies[k], solid);

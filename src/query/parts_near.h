@@ -10,6 +10,8 @@
 
 namespace spawnfield {
 
+struct Forest;
+
 /// Measures distances to some parts of a scene: to their triangles and solid shapes. Const calls may run at the same
 /// time.
 class PartsNear {
@@ -26,6 +28,7 @@ public:
 
 private:
     struct Element {
+        const Forest* forest;  ///< one of geometry_
         std::uint32_t tree, tile, element;
         ElementBox box;
     };

@@ -1,7 +1,7 @@
 #include <spawnfield/place_rules.h>
 
 #include "base/number.h"
-#include "scene/glob.h"
+#include "geometry/part_globs.h"
 
 #include <spawnfield/error.h>
 
@@ -15,27 +15,6 @@ namespace {
 std::string range_text(double low, double high)
 {
     return number(low) + ":" + (std::isinf(high) ? "" : number(high)) + " m";
-}
-
-/// Returns whether a glob matches a name of a part, or one of its words between "::".
-bool matches_part(const std::string& glob, const std::string& name)
-{
-    if (matches(glob, name)) return true;
-    for (std::size_t from = 0; name.find("::") != std::string::npos;) {
-        const std::size_t end = name.find("::", from);
-        if (matches(glob, name.substr(from, end == std::string::npos ? end : end - from))) return true;
-        if (end == std::string::npos) break;
-        from = end + 2;
-    }
-    return false;
-}
-
-std::string some_names(const std::vector<Part>& parts)
-{
-    constexpr std::size_t most = 8;
-    std::string out;
-    for (std::size_t i = 0; i < std::min(most, parts.size()); ++i) out += (i > 0 ? ", " : "") + parts[i].name;
-    return out + (parts.size() > most ? ", …" : "");
 }
 
 std::string point_text(const Vec3& point)
@@ -63,18 +42,11 @@ std::string to_string(const PlaceRules& rules)
 
 PartFlags matching_parts(const Geometry& geometry, const std::vector<std::string>& globs, const std::string& rule)
 {
-    const std::vector<Part>& parts = geometry.parts();
-    PartFlags out(parts.size());
+    PartFlags out(geometry.parts().size());
     for (const std::string& glob : globs) {
-        bool is_used = false;
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            if (!matches_part(glob, parts[i].name)) continue;
-            out[i] = 1;
-            is_used = true;
-        }
-        if (!is_used)
-            throw ArgumentError(rule + " \"" + glob + "\" matches no part of the map; there are " + some_names(parts) +
-                                " (`spawnfield info MAP` lists them; * stands for any text)");
+        const std::vector<std::size_t> found = parts_that_match(geometry, glob);
+        if (found.empty()) throw ArgumentError(rule + " " + no_part_matches(geometry, glob));
+        for (const std::size_t part : found) out[part] = 1;
     }
     return out;
 }

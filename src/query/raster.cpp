@@ -447,7 +447,7 @@ RasterResult raster_with(const Judge& judge, const RasterOptions& options, int h
     const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
     out.grid = raster_grid(bounds, options);
     const RasterJudge strips(judge.impl(), options, out.grid, out.offset, bounds.max.z(), headings);
-    map.geometry.impl().tiles().expect_all();
+    map.geometry.impl().expect_all();
     const auto rows = std::size_t(out.grid.rows);
     // Rows share no work without the height check, and each row takes long.
     std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;

@@ -2,6 +2,8 @@
 
 #include <spawnfield/scene.h>
 
+#include <algorithm>
+
 namespace spawnfield {
 
 /// Element e is triangle e of the scene, or primitive e - (number of triangles).
@@ -31,6 +33,11 @@ inline Bounds element_bounds(const Scene& scene, std::uint32_t element)
 inline Label element_label(const Scene& scene, std::uint32_t element)
 {
     return is_triangle(scene, element) ? scene.triangle_labels[element] : primitive_of(scene, element).label;
+}
+
+inline bool has_filled_meshes(const Scene& scene)
+{
+    return std::any_of(scene.pieces.begin(), scene.pieces.end(), [](const Piece& piece) { return piece.solid; });
 }
 
 inline std::uint32_t element_part(const Scene& scene, std::uint32_t element)

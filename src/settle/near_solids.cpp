@@ -89,29 +89,45 @@ const std::vector<NearSolid>& NearSolids::at(const Vec3& place)
     return solids_;
 }
 
-/// Finds the elements in an area.
+/// Sets found_ to the elements that meet an area, in the order of the scene. The order of tiles is another one in a
+/// changed scene than in the scene that was baked anew, and the last bits of a settled pose depend on the order.
+void NearSolids::find(const Rect& area)
+{
+    tiles_.clear();
+    found_.clear();
+    const Limits limits(area);
+    geometry_.impl().visit_tiles(
+        area.low_x, area.low_y, area.high_x, area.high_y, [&](const Tile& tile, const ElementBox&) {
+            for_each_bit(tile.near(area.low_x, area.low_y, area.high_x, area.high_y), [&](std::uint32_t number) {
+                const Label label = tile.label(number);
+                if (label == Label::Water || label == Label::Ignore || !limits.meet(tile.box(number))) return;
+                found_.push_back({tile.order(number), std::uint32_t(tiles_.size()), number});
+            });
+            tiles_.push_back(tile);
+        });
+    std::sort(found_.begin(), found_.end(), [](const Found& l, const Found& r) { return l.order < r.order; });
+}
+
+/// Prepares the elements in an area.
 void NearSolids::gather(const Rect& area)
 {
     known_ = {0, 0, -1, -1};
     elements_.clear();
     boxes_.clear();
-    const Limits limits(area);
-    geometry_.impl().visit_near(
-        area.low_x, area.low_y, area.high_x, area.high_y, [&](const Tile& tile, std::uint32_t number) {
-            if (tile.label(number) == Label::Water || tile.label(number) == Label::Ignore) return;
-            const ElementBox box = tile.box(number);
-            if (!limits.meet(box)) return;
-            Element& element = elements_.emplace_back();
-            element.part = tile.part(number);
-            element.label = tile.label(number);
-            if (tile.is_triangle(number)) {
-                element.corners = tile.corners(number);
-                element.shape = triangle_shape_of(element.corners);
-            } else {
-                element.primitive = std::make_shared<const Convex>(convex_of(tile.primitive(number).shape()));
-            }
-            boxes_.push_back(box);
-        });
+    find(area);
+    for (const auto& [order, t, number] : found_) {
+        const Tile& tile = tiles_[t];
+        Element& element = elements_.emplace_back();
+        element.part = tile.part(number);
+        element.label = tile.label(number);
+        if (tile.is_triangle(number)) {
+            element.corners = tile.corners(number);
+            element.shape = triangle_shape_of(element.corners);
+        } else {
+            element.primitive = std::make_shared<const Convex>(convex_of(tile.primitive(number).shape()));
+        }
+        boxes_.push_back(tile.box(number));
+    }
     cover_shared();
     numbers_.assign(elements_.size(), none);
     known_ = area;

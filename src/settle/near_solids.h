@@ -42,6 +42,10 @@ private:
         Label label;
         WantedTouches wanted;
     };
+    struct Found {
+        std::uint64_t order;         ///< Tile::order()
+        std::uint32_t tile, number;  ///< index in tiles_, and element of that tile
+    };
     /// Two triangles with a common edge, which may be a ridge or a valley by rounding only.
     struct FlatEdge {
         std::uint32_t first, second;  ///< indices in elements_
@@ -49,6 +53,7 @@ private:
     };
     static constexpr std::uint32_t none = std::uint32_t(-1);
 
+    void find(const Rect& area);
     void gather(const Rect& area);
     void cover_shared();
     void cover_edge(std::uint32_t i, const std::array<std::uint32_t, 3>& others, std::uint32_t j,
@@ -60,13 +65,16 @@ private:
     double reach_;
     std::optional<Rect> expected_;
     Rect known_{0, 0, -1, -1};       ///< all elements that meet this rectangle are in elements_
-    std::vector<Element> elements_;  ///< in the order of Geometry::Impl::visit_near()
+    std::vector<Element> elements_;  ///< in the order of the scene
     std::vector<ElementBox> boxes_;  ///< of elements_
     std::vector<FlatEdge> flat_edges_;
     Vec3 place_ = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
     std::vector<NearSolid> solids_;        ///< at place_
     std::vector<std::uint32_t> selected_;  ///< of solids_: their index in elements_
     std::vector<std::uint32_t> numbers_;   ///< of elements_: their index in solids_, or none
+    // Only used by gather():
+    std::vector<Tile> tiles_;
+    std::vector<Found> found_;
 };
 
 }  // namespace spawnfield

@@ -31,7 +31,7 @@ std::uint64_t digest_of(const Scene& scene)
 
 std::uint64_t digest_of(const Geometry& geometry)
 {
-    return Digest().add(std::string(geometry.impl().tiles().bytes())).value();
+    return Digest().add(std::string(geometry.impl().forests[0]->tiles.bytes())).value();
 }
 
 std::uint64_t digest_of(const TerrainMap& terrain)

@@ -21,8 +21,9 @@ struct CommonArgs {
 /// Headings of --help, below a command's most common options.
 namespace help_group {
 inline const std::string ground = "Poses and ground", rest = "Robot at rest", region = "Region", place = "Place",
-                         robot = "Robot", reach = "Reach", repair = "Repair", scene = "Scene", picture = "Picture",
-                         simulator = "Files for simulators", run = "Output and run";
+                         robot = "Robot", reach = "Reach", changes = "Changed world", repair = "Repair",
+                         scene = "Scene", picture = "Picture", simulator = "Files for simulators",
+                         run = "Output and run";
 }
 
 /// All options that are added after this call appear below this heading of --help.

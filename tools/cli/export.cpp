@@ -54,8 +54,8 @@ std::string users_of(const std::string& option)
 }
 
 /// Options that every format accepts.
-const std::vector<std::string> general{"map",     "--format",  "--out",  "--threads",
-                                       "--quiet", "--summary", "--help", "--allow-empty"};
+const std::vector<std::string> general{"map",       "--format", "--out",         "--threads", "--quiet",
+                                       "--summary", "--help",   "--allow-empty", "--with",    "--without"};
 
 void check_options(const ExportArgs& args, const CLI::App& command)
 {

@@ -171,10 +171,18 @@ Json islands_json(const InfoArgs& args, const Session& session, Summary& summary
     return out;
 }
 
-/// Returns the contents of a map, with at most `most_parts` of its parts.
-Json map_json(const Map& map, bool verified, std::size_t most_parts)
+/// Returns the parts of a map, without removed ones.
+std::vector<Part> parts_of(const Map& map)
 {
-    const std::span<const Part> parts = map.geometry.parts();
+    std::vector<Part> out;
+    for (std::size_t part = 0; part < map.geometry.parts().size(); ++part)
+        if (!map.geometry.is_removed(part)) out.push_back(map.geometry.parts()[part]);
+    return out;
+}
+
+/// Returns the contents of a map, with at most `most_parts` of its parts. A changed map has no files.
+Json map_json(const Map& map, std::span<const Part> parts, bool verified, std::size_t most_parts)
+{
     Json out = {{"kind", "map"},
                 {"name", map.name},
                 {"bounds", json_of(map.bounds)},
@@ -187,8 +195,12 @@ Json map_json(const Map& map, bool verified, std::size_t most_parts)
     out["floors"] = floors_json(map);
     if (map.origin) out["origin"] = json_of(*map.origin);
     if (verified) out["verified"] = true;
-    out["files"]["map.yaml"] = fs::file_size(map.folder / "map.yaml");
-    for (const char* const name : map_files) out["files"][name] = fs::file_size(map.folder / name);
+    if (!map.changes.empty()) {
+        out["changes"] = map.changes;
+    } else {
+        out["files"]["map.yaml"] = fs::file_size(map.folder / "map.yaml");
+        for (const char* const name : map_files) out["files"][name] = fs::file_size(map.folder / name);
+    }
     add_contents(map.geometry.labels(), parts.first(std::min(parts.size(), most_parts)), out);
     return out;
 }
@@ -432,7 +444,13 @@ std::string map_lines(const Json& map, std::span<const Part> parts)
            "; voxels of " + map["occupancy_resolution"].dump() + " m\n" + z_limits_line(map) + origin_line(map);
     out += floor_lines(map);
     if (map.contains("reach")) out += island_lines(map["reach"]);
-    out += scene_lines(map, parts) + "files\n";
+    out += scene_lines(map, parts);
+    if (map.contains("changes")) {
+        out += "changes\n";
+        for (const Json& change : map["changes"]) out += "  " + change.get<std::string>() + "\n";
+        return out;
+    }
+    out += "files\n";
     for (const auto& [name, bytes] : map["files"].items()) out += "  " + name + ": " + bytes.dump() + " bytes\n";
     if (map.contains("verified")) out += "all files match their checksums\n";
     return out;
@@ -535,24 +553,29 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
         refuse(command, scene_option_names, "is only for scenes; " + args.what + " is a map");
         refuse(command, robot_options_of_info, "is only for robots; " + args.what + " is a map");
         refuse(command, {"--model-path"}, "is only for scenes and robots; " + args.what + " is a map");
-        if (args.verify) verify_map(args.what);
+        if (args.verify) {
+            refuse(command, change_option_names, "is not for --verify, which examines the files of the map");
+            verify_map(args.what);
+        }
         QueryArgs query = args;
         query.map = args.what;
         const Session session = open_session(query, summary);
         const Map& map = session.map;
-        parts.assign(map.geometry.parts().begin(), map.geometry.parts().end());
-        out = map_json(map, args.verify, args.json ? parts.size() : most_lines);
+        parts = parts_of(map);
+        out = map_json(map, parts, args.verify, args.json ? parts.size() : most_lines);
         if (args.islands) out["reach"] = islands_json(args, session, summary);
     } else if (robot_given) {
         refuse(command, scene_option_names, "is only for scenes; " + args.what + " is a robot");
-        refuse(command, {"--verify", "--islands"}, "is only for maps; " + args.what + " is a robot");
+        refuse(command, {"--verify", "--islands", "--with", "--without"},
+               "is only for maps; " + args.what + " is a robot");
         const Robot robot = load_robot(args.what, robot_options(args));
         notices(args, robot.notices);
         if (picture_to) write_robot_picture(robot, picture_to->path);
         out = robot_json(robot);
     } else {
         refuse(command, robot_options_of_info, "is only for robots; " + args.what + " is not a robot");
-        refuse(command, {"--verify", "--islands"}, "is only for maps; " + args.what + " is not a map");
+        refuse(command, {"--verify", "--islands", "--with", "--without"},
+               "is only for maps; " + args.what + " is not a map");
         Scene scene = load_scene(args.what, scene_options(args, args));
         notices(args, scene.notices);
         out = scene_json(scene);
@@ -593,6 +616,7 @@ void add_info(CLI::App& app, ChosenCommand& chosen)
     islands->needs(robot);
     robot->needs(islands);
     add_reach(command, args->reach);
+    add_changes(command, *args);
     add_label_options(command, *args);
     add_model_path(command, *args);
     add_scene_options(command, *args);

@@ -143,6 +143,7 @@ void notice_about_mass(const CommonArgs& args, const Robot& robot)
 
 void add_robot_and_run(CLI::App& command, QueryArgs& args)
 {
+    add_changes(command, args);
     start_group(command, help_group::robot);
     add_model_path(command, args);
     add_robot_options(command, args);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "change_args.h"
 #include "common_args.h"
 #include "robot_args.h"
 
@@ -12,7 +13,7 @@
 namespace spawnfield::cli {
 
 /// Options of every command that judges poses in a map.
-struct QueryArgs : CommonArgs, RobotArgs {
+struct QueryArgs : CommonArgs, RobotArgs, ChangeArgs {
     std::string map, robot, collision = "geometry";
     double max_height = 1.0;
     bool exhaustive = false;
@@ -51,7 +52,7 @@ void add_map_and_robot(CLI::App& command, QueryArgs& args);
 /// Adds, below the heading "Poses and ground", the options on which every verdict depends.
 void add_verdict_options(CLI::App& command, QueryArgs& args);
 
-/// Adds the options on how the robot is read, and those that every command has.
+/// Adds the options on changes of the map, on how the robot is read, and those that every command has.
 void add_robot_and_run(CLI::App& command, QueryArgs& args);
 
 /// Returns the options of the Judge. The time of exact checks is added to `exact_time`. Throws ArgumentError for limits

@@ -46,7 +46,9 @@ Session open_session(const QueryArgs& args, Summary& summary)
     }
     session.map = read_map(args.map);
     notice_if_old(args, session.map);
+    if (args.has_changes()) session.map = changed_map(args, args, args.model_paths, std::move(session.map));
     summary.map_hash = session.map.hash;
+    summary.changes = session.map.changes;
     if (args.robot.empty()) return session;
     notice_if_larger_than_map(args, session.robot, session.map);
     session.judge.emplace(session.map, session.robot, options);

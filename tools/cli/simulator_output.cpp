@@ -360,6 +360,7 @@ void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const 
                                  {"is", "ground below the spawns, by tile: rows along x, columns along y"}};
     about["terrain_origins.npy"] = {{"shape", {grid.rows, grid.cols, 3}}, {"is", "the first patch of each tile"}};
     about["map"] = {{"name", map.name}, {"hash", map.hash}};
+    if (!map.changes.empty()) about["map"]["changes"] = map.changes;
     clear_progress_bar();
     const fs::path& into = folder_->path();
     write_file_atomically(into / "root_pose.npy",

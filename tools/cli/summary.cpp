@@ -112,6 +112,7 @@ std::string Summary::json(double total) const
     out["threads"] = threads();
     out["seed"] = seed;
     out["map_hash"] = map_hash;
+    if (!changes.empty()) out["changes"] = changes;
     out["version"] = version();
     return out.dump(2) + "\n";
 }

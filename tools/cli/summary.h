@@ -26,6 +26,7 @@ public:
 
     std::uint64_t seed = 0;
     std::string map_hash;
+    std::vector<std::string> changes;                         ///< of the map
     ExactTime exact_time;                                     ///< for a query's options
     std::vector<std::string> extra;                           ///< further words, at the beginning of the line
     std::optional<double> offset;                             ///< m, of poses on layers

@@ -13,6 +13,7 @@ Settings query_settings(const std::string& command, const QueryArgs& args, const
                  {"Map", session.map.name},
                  {"Map hash", session.map.hash},
                  {"Robot", session.robot.name}};
+    for (const std::string& change : session.map.changes) out.emplace_back("Map change", change);
     for (const auto& [joint, value] : session.robot.joints)
         out.emplace_back("Joint " + joint + " (rad or m)", number(value));
     if (session.robot.mesh_parts != 1) out.emplace_back("Mesh parts", std::to_string(session.robot.mesh_parts));

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "geometry/tile.h"
+
+#include <spawnfield/solid_bounds.h>
+
+#include <span>
+
+namespace spawnfield {
+
+/// Returns the images that SolidBounds(geometry, bounds, cell) of a changed geometry has, where `base` has those of the
+/// unchanged one with the same bounds. Tiles that meet no box of the changes are shared with `base`. Each other one is
+/// made when it is first opened, so this function only lists them.
+SolidBounds changed_bounds(const SolidBounds& base, const Geometry& geometry, const Bounds& bounds,
+                           std::span<const ElementBox> boxes);
+
+}  // namespace spawnfield
