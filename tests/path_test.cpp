@@ -107,6 +107,15 @@ std::map<slow::Reach::State, SlowCost> slow_paths(const slow::Reach& reach, cons
     return out;
 }
 
+/// Returns the number of turns on the spot.
+int turns_of(const std::vector<std::uint64_t>& states)
+{
+    int out = 0;
+    for (std::size_t k = 1; k < states.size(); ++k)
+        out += states[k] / lattice_headings == states[k - 1] / lattice_headings;
+    return out;
+}
+
 struct PathWorld {
     TestMap map;
     Judge judge;
@@ -149,7 +158,7 @@ TEST_CASE("Shortest paths are those of a slow search on the slow graph")
                             states.push_back({col, row, int(p - graph.first[graph.column_of(col, row)]), h});
                             ids.push_back(p * lattice_headings + std::uint64_t(h));
                         }
-        PathSearch::Impl search(world.graph.impl());
+        PathSearch::Impl search(std::make_shared<const PathGraph>(world.graph.impl()));
         for (const std::size_t start : {std::size_t(0), states.size() / 2}) {
             const auto expected = slow_paths(reach, graph.grid, drive, states[start]);
             for (std::size_t goal = 0; goal < states.size(); ++goal) {
@@ -159,13 +168,15 @@ TEST_CASE("Shortest paths are those of a slow search on the slow graph")
                 REQUIRE(found.has_value() == (known != expected.end()));
                 ++(found ? reached : unreached);
                 if (!found) continue;
+                const std::vector<std::uint64_t> path = search.states();
                 // The rounding of each way is at most 1 nm.
-                CHECK(std::abs(found->length - double(known->second.first) * 1e-9) <
-                      2e-9 * double(found->states.size()));
+                CHECK(std::abs(*found - double(known->second.first) * 1e-9) < 2e-9 * double(path.size()));
+                CHECK((path.front() == ids[start] && path.back() == ids[goal]));
+                CHECK(turns_of(path) == known->second.second);
                 // A limit just below the length finds nothing, and one at the length finds the path.
-                if (found->length == 0) continue;
-                CHECK_FALSE(search.find(ids[start], ids[goal], found->length - 1e-6));
-                CHECK(search.find(ids[start], ids[goal], found->length)->length == found->length);
+                if (*found == 0) continue;
+                CHECK_FALSE(search.find(ids[start], ids[goal], *found - 1e-6));
+                CHECK(*search.find(ids[start], ids[goal], *found) == *found);
             }
         }
     }
@@ -209,6 +220,28 @@ TEST_CASE("A straight path along a lattice heading has the length of the line, a
     CHECK(search.path(world.at(-1, 0), world.at(1, 0))->poses.size() == 2 + 9);
     CHECK_FALSE(search.length(world.at(-1, 0), world.at(1, 0), 1.99));
     CHECK(search.length(world.at(-1, 0), world.at(1, 0), 2.01));
+}
+
+TEST_CASE("In the open, paths have the length that searches take as their lower limit")
+{
+    for (int heading = 0; heading < lattice_headings; ++heading)
+        for (const Way way : {Way::Ahead, Way::Left, Way::Right}) {
+            const LatticeMove move = way_end(way, heading).move;
+            CHECK(open_length(move.cols, move.rows) == Approx(way_length(way, heading)).epsilon(1e-12));
+        }
+    const PathWorld world(level_floor(), boxy({0.5, 0.3, 0.25}), {.step = 0.125});
+    PathSearch search(world.graph);
+    for (int cols = -7; cols <= 7; ++cols)
+        for (int rows = -7; rows <= 7; ++rows) {
+            CAPTURE(cols, rows);
+            const double length = open_length(cols, rows), straight = std::hypot(cols, rows);
+            CHECK(length >= straight * (1 - 1e-12));
+            CHECK(length <= 1.028 * straight);
+            // Not each end is a sum of few moves. The poses are near the middle, where all ways are free.
+            const double found = *search.length(world.at(0, 0), world.at(cols * 0.125, rows * 0.125)) / 0.125;
+            CHECK(found >= length * (1 - 1e-12));
+            CHECK(found <= length + 0.5);
+        }
 }
 
 TEST_CASE("A path goes around a wall")

@@ -18,7 +18,7 @@ struct Path {
 };
 
 /// Finds shortest paths on a graph whose ways are kept (ReachOptions::keep_ways). For one thread: each thread needs its
-/// own object. It uses 8 bytes for each place of the graph, and about 300 bytes for each place that a search reaches.
+/// own object. It uses about 200 bytes for each place of the graph.
 ///
 /// The length of a way is measured on the ground: sqrt(d^2 + r^2), where d is the length of its course seen from above,
 /// and r the difference between the heights of the ground at its ends. A turn on the spot has the length 0. A pose that

@@ -45,9 +45,9 @@ void check_pair_options(const PairOptions& options)
 class PairSampler {
 public:
     PairSampler(const Judge& judge, const ReachGraph& graph, const PairOptions& options)
-        : judge_(judge), options_(options), searches_([graph] { return Search(graph.impl()); })
+        : judge_(judge), options_(options),
+          searches_([graph = std::make_shared<const PathGraph>(graph.impl())] { return Search(graph); })
     {
-        searches_.local();  // throws if the graph does not keep its ways
     }
 
     PairList run()
@@ -125,11 +125,11 @@ private:
         Search& search = searches_.local();
         const auto found = search.find(*start.end, *goal.end, options_.max_path);
         if (!found) return std::nullopt;
-        out.path_length = found->length;
+        out.path_length = *found;
         if (out.path_length < options_.min_path || out.detour() < options_.min_detour) return std::nullopt;
         out.start = start.pose;
         out.goal = goal.pose;
-        if (options_.keep_paths) out.path = search.path_of(*found, start.pose, goal.pose).poses;
+        if (options_.keep_paths) out.path = search.poses(start.pose, goal.pose);
         return out;
     }
 
