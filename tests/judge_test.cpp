@@ -135,7 +135,15 @@ TEST_CASE("a pose over a crest that is above its origin and below the robot is v
     const std::string no_ground = "aerial: no ground below the origin; ";
     const std::string below = no_ground + "with the ground below the robot, ";
     const Judgement over = check(0.02);
+    const auto settle = [&](double z) {
+        const Pose pose{{0, 0, z}};
+        return judge.settle(std::span(&pose, 1))[0];
+    };
     if (label == Label::Terrain && !is_wet) {
+        CHECK(settle(0.02).verdict == Verdict::Valid);
+        CHECK(settle(0.02).position.z() == Approx(0).margin(1e-9));
+        CHECK(settle(0.02).ground->height == Approx(crest));
+        CHECK(settle(-0.02).verdict == Verdict::Aerial);  // the robot is let down, and not up
         CHECK(over.verdict == Verdict::Valid);
         CHECK(over.ground->height == Approx(crest));
         CHECK(check(-0.02).verdict == Verdict::Aerial);  // the skids are in the ground
@@ -143,6 +151,7 @@ TEST_CASE("a pose over a crest that is above its origin and below the robot is v
         CHECK(check(crest + 0.02).verdict == Verdict::Valid);
     } else {
         CHECK(over.verdict == Verdict::Aerial);
+        CHECK(settle(0.02).verdict == Verdict::Aerial);
         CHECK_FALSE(over.ground);
         CHECK_THAT(reason(0.02),
                    Contains(below) && Contains(label == Label::Terrain ? "it is submerged"

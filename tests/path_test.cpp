@@ -133,6 +133,13 @@ struct PathWorld {
     SettledPose at(double x, double y, double yaw = 0) const { return judge.settle({x, y, 0}, yaw); }
 };
 
+/// Returns the length of the shortest path of the graph.
+std::optional<double> graph_length(PathSearch::Impl& search, const SettledPose& start, const SettledPose& goal)
+{
+    const auto first = search.end_of(start), last = search.end_of(goal);
+    return first && last ? search.find(*first, *last, 1e3) : std::nullopt;
+}
+
 }  // namespace
 
 TEST_CASE("Shortest paths are those of a slow search on the slow graph")
@@ -184,12 +191,13 @@ TEST_CASE("Shortest paths are those of a slow search on the slow graph")
     CHECK(unreached > 20);
 }
 
-TEST_CASE("A path has the same length in both directions, and its poses are valid")
+TEST_CASE("A path of the graph has the same length in both directions, and a shortened one is not longer")
 {
     const PathWorld world(random_walls(4), boxy({0.5, 0.3, 0.25}), {.step = 0.2});
+    PathSearch::Impl graph_search(std::make_shared<const PathGraph>(world.graph.impl()));
     PathSearch search(world.graph);
     Random random(7);
-    int paths = 0;
+    int paths = 0, shorter = 0;
     for (int k = 0; k < 60; ++k) {
         const auto pose = [&] { return world.at(random.between(-2, 2), random.between(-2, 2), random.between(-3, 3)); };
         const SettledPose start = pose(), goal = pose();
@@ -198,28 +206,77 @@ TEST_CASE("A path has the same length in both directions, and its poses are vali
         CHECK(path.has_value() == (island && island == world.graph.island_of(goal)));
         if (!path) continue;
         ++paths;
+        const double on_graph = *graph_length(graph_search, start, goal);
+        CHECK(*graph_length(graph_search, goal, start) == Approx(on_graph).margin(1e-9));
         CHECK(path->length >= (goal.position - start.position).head<2>().norm() - 1e-9);
-        CHECK(std::abs(*search.length(goal, start) - path->length) < 1e-12 + 1e-9);
+        CHECK(path->length <= on_graph + 1e-9);
+        shorter += path->length < on_graph - 1e-3;
+        CHECK_FALSE(search.path(start, goal, path->length - 1e-6));
+        CHECK(search.path(start, goal, on_graph));
         for (const SettledPose& stop : path->poses) CHECK(stop.verdict == Verdict::Valid);
         CHECK(path->poses.front().position == start.position);
         CHECK(path->poses.back().position == goal.position);
     }
     CHECK(paths > 10);
+    CHECK(shorter > 10);
 }
 
-TEST_CASE("A straight path along a lattice heading has the length of the line, and turns count nothing")
+TEST_CASE("On a path, the robot collides nowhere between its poses")
+{
+    int pieces = 0;
+    for (const std::uint64_t seed : {5, 6, 7}) {
+        const PathWorld world(random_walls(seed), boxy({0.5, 0.3, 0.25}), {.step = 0.15});
+        PathSearch search(world.graph);
+        Random random(seed);
+        for (int k = 0; k < 40; ++k) {
+            const auto pose = [&] {
+                return world.at(random.between(-2, 2), random.between(-2, 2), random.between(-3, 3));
+            };
+            const auto path = search.path(pose(), pose());
+            if (!path) continue;
+            double length = 0;
+            for (std::size_t p = 1; p < path->poses.size(); ++p) {
+                const SettledPose &from = path->poses[p - 1], &to = path->poses[p];
+                CAPTURE(seed, k, p);
+                const Vec3 move = to.position - from.position;
+                const double turn = turn_between(from.yaw, to.yaw), step = move.norm();
+                CHECK(std::abs(turn) < 0.47);  // the largest turn between two headings of the graph
+                length += step;
+                // On curves, the robot leaves the straight line; the test of the graph covers them. All others go
+                // ahead or back, or turn on the spot.
+                if (step > 1e-9 && std::abs(turn) > 1e-9) continue;
+                ++pieces;
+                for (int part = 0; part <= 8; ++part) {
+                    const double t = part / 8.0;
+                    const Pose between{from.position + t * move + world.judge.options().stand.lift * Vec3::UnitZ(),
+                                       rotation_of_rpy(0, 0, from.yaw + t * turn)};
+                    CHECK(world.judge.check(between).verdict == Verdict::Valid);
+                }
+            }
+            CHECK(path->length >= length - 1e-6);  // the chords of curves are shorter
+            CHECK(path->length <= length * 1.03 + 1e-6);
+        }
+    }
+    CHECK(pieces > 500);
+}
+
+TEST_CASE("In the open, a path is the straight line, at any heading")
 {
     const PathWorld world(level_floor(), boxy({0.5, 0.3, 0.25}), {.step = 0.25});
     PathSearch search(world.graph);
-    CHECK_THAT(*search.length(world.at(-1, 0), world.at(1, 0)), Catch::Matchers::WithinAbs(2, 1e-7));
-    CHECK_THAT(*search.length(world.at(-1, 0, std::numbers::pi / 2), world.at(1, 0, std::numbers::pi)),
-               Catch::Matchers::WithinAbs(2, 1e-7));
-    CHECK_THAT(*search.length(world.at(-1, -1), world.at(1, 1)), Catch::Matchers::WithinAbs(std::sqrt(8), 1e-7));
-    CHECK_THAT(*search.length(world.at(-1, -0.5), world.at(1, 0.5)), Catch::Matchers::WithinAbs(std::sqrt(5), 1e-7));
-    // No unneeded turn: one pose for the start and the goal each, nine states.
-    CHECK(search.path(world.at(-1, 0), world.at(1, 0))->poses.size() == 2 + 9);
-    CHECK_FALSE(search.length(world.at(-1, 0), world.at(1, 0), 1.99));
-    CHECK(search.length(world.at(-1, 0), world.at(1, 0), 2.01));
+    const auto length = [&](const SettledPose& start, const SettledPose& goal) {
+        return search.path(start, goal)->length;
+    };
+    CHECK_THAT(length(world.at(-1, 0), world.at(1, 0)), Catch::Matchers::WithinAbs(2, 1e-9));
+    CHECK_THAT(length(world.at(-1, 0, std::numbers::pi / 2), world.at(1, 0, std::numbers::pi)),
+               Catch::Matchers::WithinAbs(2, 1e-9));
+    CHECK_THAT(length(world.at(-1, -0.5), world.at(1, 0.5)), Catch::Matchers::WithinAbs(std::sqrt(5), 1e-9));
+    CHECK_THAT(length(world.at(-1.03, -0.77, 2), world.at(0.91, 1.13, -1)),
+               Catch::Matchers::WithinAbs(std::hypot(1.94, 1.9), 1e-9));
+    CHECK_FALSE(search.path(world.at(-1, 0), world.at(1, 0), 1.99));
+    CHECK(search.path(world.at(-1, 0), world.at(1, 0), 2.01));
+    // The start, seven stops in between, and the goal: 0.25 m apart, without a turn.
+    CHECK(search.path(world.at(-1, 0), world.at(1, 0))->poses.size() == 9);
 }
 
 TEST_CASE("In the open, paths have the length that searches take as their lower limit")
@@ -230,7 +287,7 @@ TEST_CASE("In the open, paths have the length that searches take as their lower 
             CHECK(open_length(move.cols, move.rows) == Approx(way_length(way, heading)).epsilon(1e-12));
         }
     const PathWorld world(level_floor(), boxy({0.5, 0.3, 0.25}), {.step = 0.125});
-    PathSearch search(world.graph);
+    PathSearch::Impl search(std::make_shared<const PathGraph>(world.graph.impl()));
     for (int cols = -7; cols <= 7; ++cols)
         for (int rows = -7; rows <= 7; ++rows) {
             CAPTURE(cols, rows);
@@ -238,25 +295,40 @@ TEST_CASE("In the open, paths have the length that searches take as their lower 
             CHECK(length >= straight * (1 - 1e-12));
             CHECK(length <= 1.028 * straight);
             // Not each end is a sum of few moves. The poses are near the middle, where all ways are free.
-            const double found = *search.length(world.at(0, 0), world.at(cols * 0.125, rows * 0.125)) / 0.125;
+            const double found = *graph_length(search, world.at(0, 0), world.at(cols * 0.125, rows * 0.125)) / 0.125;
             CHECK(found >= length * (1 - 1e-12));
             CHECK(found <= length + 0.5);
         }
 }
 
-TEST_CASE("A path goes around a wall")
+TEST_CASE("In a maze, a path is at most 1 % longer than the shortest one")
 {
-    Scene scene = level_floor();
-    add_wall(scene, {-0.05, -2}, {0.05, 1});
-    const PathWorld world(std::move(scene), boxy({0.2, 0.2, 0.2}), {.step = 0.05});
-    PathSearch search(world.graph);
-    // The origin keeps half a width (0.1 m) from the wall, so no path is shorter than two lines past its corners. The
-    // longest lattice path along two lines has 2.8 % more, and some grid steps for the corners.
-    const Vec2 corner(-0.15, 1.1), other(0.15, 1.1), start(-1, -1), goal(1, -1);
-    const double least = (corner - start).norm() + (other - corner).norm() + (goal - other).norm();
-    const double found = *search.length(world.at(start.x(), start.y()), world.at(goal.x(), goal.y()));
-    CHECK(found >= least - 0.02);
-    CHECK(found <= 1.028 * least + 0.15);
+    // A round robot: its middle keeps its radius from the walls. So the shortest path is a rubber band around circles
+    // about the ends of two walls, one from below and one from above.
+    constexpr double radius = 0.2, wall = 0.1;
+    Scene scene;
+    add_block(scene, {-3, -2, -0.5}, {3, 2, 0});
+    add_wall(scene, {-1 - wall / 2, -2.5}, {-1 + wall / 2, 1});
+    add_wall(scene, {1 - wall / 2, -1}, {1 + wall / 2, 2.5});
+    Robot robot = make_robot("round", {shape_part(cylinder_shape(radius, 0.3, {{0, 0, 0.15}}))});
+    robot.mass_center = Vec3(0, 0, 0.1);
+    const Vec2 start(-2.53, -1.51), first(-1 - wall / 2, 1), second(-1 + wall / 2, 1), third(1 - wall / 2, -1);
+    const double to_first = (first - start).norm(), across = (third - second).norm();
+    const auto direction = [](const Vec2& way) { return std::atan2(way.y(), way.x()); };
+    // Tangents: the first circle is on the right of the path, the third one on its left.
+    const double up = direction(first - start) + std::asin(radius / to_first),
+                 down = direction(third - second) - std::asin(2 * radius / across);
+    const double shortest = 2 * (std::sqrt(to_first * to_first - radius * radius) + radius * (up - down) + wall) +
+                            std::sqrt(across * across - 4 * radius * radius);
+    for (const double step : {0.1, 0.05}) {
+        const PathWorld world(scene, robot, {.step = step});
+        const auto path =
+            PathSearch(world.graph).path(world.at(start.x(), start.y()), world.at(-start.x(), -start.y()));
+        REQUIRE(path);
+        CAPTURE(step, shortest);
+        CHECK(path->length >= shortest - 1e-6);
+        CHECK(path->length <= 1.01 * shortest);
+    }
 }
 
 TEST_CASE("A path search needs a graph that keeps its ways")

@@ -93,7 +93,9 @@ public:
     /// comes to rest there. The first verdicts are those of a pose at the place: `outside`, `aerial`, `off_terrain`,
     /// `submerged`. See docs/standing.md. Throws ArgumentError if JudgeOptions::obstacles is Voxels.
     SettledPose settle(const Vec3& place, double yaw) const;
-    /// The same for each pose, in their order. Rolls and pitches are not used. Throws what options.progress throws.
+    /// The same for each pose, in their order. Only yaws are used for the robot at rest. If a pose is not valid, ground
+    /// between its origin and the robot's lowest point above that is tried, too: the robot may stand over a crest. That
+    /// pose counts if it is valid and not above the given one. Throws what options.progress throws.
     std::vector<SettledPose> settle(std::span<const Pose> poses, const RunOptions& options = {}) const;
 
     /// Returns the verdict and its cause in words, for example "collision with thin_wall". `judgement` must be that of

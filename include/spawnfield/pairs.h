@@ -3,6 +3,7 @@
 #include <spawnfield/path.h>
 #include <spawnfield/query.h>
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -15,19 +16,22 @@ struct PairOptions {
     double min_path = 0;                                        ///< m, >= 0; shortest path from start to goal
     double max_path = std::numeric_limits<double>::infinity();  ///< m, >= min_path
     double min_detour = 1;                                      ///< >= 1; limit of StartGoal::detour()
-    bool keep_paths = false;                                    ///< whether StartGoal::path is filled
+    /// Whether paths are those of PathSearch. Otherwise, they are shortest paths of the graph: up to 2.8 % longer in
+    /// the open, in about a tenth of the time.
+    bool shorten = true;
+    bool keep_paths = false;  ///< whether StartGoal::path is filled
 };
 
 /// A start and a goal, both valid settled poses (not raised) on one island.
 struct StartGoal {
     SettledPose start = {}, goal = {};
-    double path_length = 0;              ///< m, see PathSearch
+    double path_length = 0;              ///< m; see PathSearch and PairOptions::shorten
     double straight = 0;                 ///< m, between the ground at the start and at the goal
     std::size_t island = 0;              ///< index in ReachGraph::islands()
     std::vector<SettledPose> path = {};  ///< Path::poses, if they were wanted
 
     /// Returns how many times the path is as long as the straight line, >= 1.
-    double detour() const { return straight > 0 ? path_length / straight : 1; }
+    double detour() const { return straight > 0 ? std::max(1.0, path_length / straight) : 1; }
 };
 
 struct PairList {

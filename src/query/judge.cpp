@@ -377,11 +377,27 @@ SettledPose Judge::settle(const Vec3& place, double yaw) const { return StandJud
 
 std::vector<SettledPose> Judge::settle(std::span<const Pose> poses, const RunOptions& options) const
 {
+    constexpr double rounding = 1e-6;  // m
+    struct Thread {
+        StandJudge judge;
+        Underside underside;
+    };
     std::vector<SettledPose> out(poses.size());
     judge_all(
-        poses, options, [&] { return StandJudge(*impl_); },
-        [&](std::uint32_t i, StandJudge& judge) {
-            out[i] = judge.judge(poses[i].position, yaw_of(poses[i].rotation));
+        poses, options,
+        [&] {
+            return Thread{StandJudge(*impl_), Underside(impl_->robot)};
+        },
+        [&](std::uint32_t i, Thread& thread) {
+            const Vec3& position = poses[i].position;
+            const double yaw = yaw_of(poses[i].rotation), above = thread.underside.above_origin(poses[i].rotation);
+            out[i] = thread.judge.judge(position, yaw);
+            if (out[i].verdict == Verdict::Valid || above == 0) return;
+            // The robot may stand over a crest that is higher than its origin. It is only let down, so the pose at
+            // which it stands is not above the given one.
+            SettledPose over = thread.judge.judge(position + above * Vec3::UnitZ(), yaw);
+            if (over.verdict == Verdict::Valid && over.position.z() <= position.z() + rounding)
+                out[i] = std::move(over);
         });
     return out;
 }

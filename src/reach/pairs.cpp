@@ -119,17 +119,23 @@ private:
     std::optional<StartGoal> pair_of(const Drawn& start, const Drawn& goal, int& made)
     {
         if (!start.end || !goal.end || start.end->island != goal.end->island) return std::nullopt;
-        StartGoal out{.straight = (start.end->ground - goal.end->ground).norm(), .island = start.end->island};
+        StartGoal out{.straight = (start.end->stop.ground - goal.end->stop.ground).norm(), .island = start.end->island};
         if (out.straight > options_.max_path) return std::nullopt;
         ++made;
         Search& search = searches_.local();
-        const auto found = search.find(*start.end, *goal.end, options_.max_path);
-        if (!found) return std::nullopt;
-        out.path_length = *found;
-        if (out.path_length < options_.min_path || out.detour() < options_.min_detour) return std::nullopt;
+        const auto found = search.find(*start.end, *goal.end,
+                                       options_.max_path * (options_.shorten ? longest_graph_path : 1));
+        const auto fits = [&](double length) {
+            out.path_length = length;
+            return length >= options_.min_path && out.detour() >= options_.min_detour;
+        };
+        if (!found || !fits(*found)) return std::nullopt;
+        ShortPath path;
+        if (options_.shorten || options_.keep_paths) path = search.path(*start.end, *goal.end, options_.shorten);
+        if (options_.shorten && (path.length > options_.max_path || !fits(path.length))) return std::nullopt;
         out.start = start.pose;
         out.goal = goal.pose;
-        if (options_.keep_paths) out.path = search.poses(start.pose, goal.pose);
+        if (options_.keep_paths) out.path = search.poses(path, start.pose, goal.pose);
         return out;
     }
 

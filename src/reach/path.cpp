@@ -4,8 +4,10 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 namespace spawnfield {
 namespace {
@@ -119,7 +121,7 @@ std::optional<PathSearch::Impl::End> PathSearch::Impl::end_of(const SettledPose&
     const Vec3 ground(pose.position.x(), pose.position.y(), pose.ground->height);
     return End{.state = id,
                .island = graph.node_islands[graph.node_of(state->place, state->heading)],
-               .ground = ground,
+               .stop = {ground, pose.yaw},
                .length = (ground - graph_->ground_of(id)).norm()};
 }
 
@@ -132,12 +134,37 @@ std::optional<double> PathSearch::Impl::find(const End& start, const End& goal, 
     return length <= longest ? std::optional(length) : std::nullopt;
 }
 
-std::vector<SettledPose> PathSearch::Impl::poses(const SettledPose& start, const SettledPose& goal)
+/// Returns the cost of the cheapest way between two neighbours.
+PathCost PathSearch::Impl::cost_between(StateId from, StateId to) const
+{
+    PathCost out = std::numeric_limits<PathCost>::max();
+    for (const auto& [state, cost] : graph_->neighbours(from))
+        if (state == to) out = std::min(out, cost);
+    return out;
+}
+
+ShortPath PathSearch::Impl::path(const End& start, const End& goal, bool shorten)
+{
+    std::vector<Stop> stops{start.stop};
+    std::vector<double> lengths{start.length};
+    const std::vector<StateId> found = states();
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        stops.push_back({graph_->ground_of(found[k]), lattice_yaw(int(found[k] % lattice_headings))});
+        if (k + 1 < found.size()) lengths.push_back(double(cost_between(found[k], found[k + 1])) * nanometre);
+    }
+    stops.push_back(goal.stop);
+    lengths.push_back(goal.length);
+    if (shorten) return shortened(graph_->graph(), stops, lengths);
+    const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+    return {std::move(stops), length};
+}
+
+std::vector<SettledPose> PathSearch::Impl::poses(const ShortPath& path, const SettledPose& start,
+                                                 const SettledPose& goal) const
 {
     std::vector<SettledPose> out{start};
-    for (const StateId state : states())
-        out.push_back(
-            graph_->graph().judge.settle(graph_->ground_of(state), lattice_yaw(int(state % lattice_headings))));
+    for (std::size_t k = 1; k + 1 < path.stops.size(); ++k)
+        out.push_back(graph_->graph().judge.settle(path.stops[k].ground, path.stops[k].yaw));
     out.push_back(goal);
     return out;
 }
@@ -149,17 +176,13 @@ PathSearch::PathSearch(const ReachGraph& graph)
 PathSearch::PathSearch(PathSearch&&) noexcept = default;
 PathSearch::~PathSearch() = default;
 
-std::optional<double> PathSearch::length(const SettledPose& start, const SettledPose& goal, double longest)
-{
-    const auto first = impl_->end_of(start), last = impl_->end_of(goal);
-    return first && last ? impl_->find(*first, *last, longest) : std::nullopt;
-}
-
 std::optional<Path> PathSearch::path(const SettledPose& start, const SettledPose& goal, double longest)
 {
-    const auto found = length(start, goal, longest);
-    if (!found) return std::nullopt;
-    return Path{.poses = impl_->poses(start, goal), .length = *found};
+    const auto first = impl_->end_of(start), last = impl_->end_of(goal);
+    if (!first || !last || !impl_->find(*first, *last, longest * longest_graph_path)) return std::nullopt;
+    const ShortPath found = impl_->path(*first, *last, true);
+    if (found.length > longest) return std::nullopt;
+    return Path{.poses = impl_->poses(found, start, goal), .length = found.length};
 }
 
 }  // namespace spawnfield

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "reach/path_graph.h"
+#include "reach/shorten.h"
 
 #include <spawnfield/path.h>
 
@@ -8,6 +9,9 @@
 #include <queue>
 
 namespace spawnfield {
+
+/// A path in the open, shortened, has at least the length of a path of the graph divided by this.
+inline constexpr double longest_graph_path = 1.03;
 
 /// Finds shortest paths with A*. Source: Hart, Nilsson, Raphael, A formal basis for the heuristic determination of
 /// minimum cost paths, 1968.
@@ -27,16 +31,18 @@ public:
     struct End {
         StateId state;
         std::size_t island;
-        Vec3 ground;    ///< below the pose, m
+        Stop stop;      ///< where the pose is
         double length;  ///< from the ground below the pose to that of the state, m
     };
     /// Returns nothing for a pose that is not valid or on no island.
     std::optional<End> end_of(const SettledPose& pose) const;
 
-    /// Returns the same between two poses.
+    /// Returns the length of the shortest path of the graph between two poses.
     std::optional<double> find(const End& start, const End& goal, double longest);
-    /// Returns the poses of states(), between a start and a goal.
-    std::vector<SettledPose> poses(const SettledPose& start, const SettledPose& goal);
+    /// Returns the path that the last call of find() found between these ends; if wanted, it is shortened().
+    ShortPath path(const End& start, const End& goal, bool shorten);
+    /// Returns the settled poses of a path, between a start and a goal.
+    std::vector<SettledPose> poses(const ShortPath& path, const SettledPose& start, const SettledPose& goal) const;
 
     const PathGraph& graph() const { return *graph_; }
 
@@ -62,6 +68,7 @@ private:
     {
         return is_reached(from) && labels_[from].cost + cost == labels_[to].cost;
     }
+    PathCost cost_between(StateId from, StateId to) const;
     bool expand(PathCost most, Group until);
     std::vector<Group> groups_on_shortest_paths();
 

@@ -65,6 +65,14 @@ struct ReachGraph::Impl {
         return node + std::uint32_t(std::popcount(HeadingSet(valid[place] & ((1u << heading) - 1))));
     }
 
+    /// Returns whether there is nothing but level ground around a place, as far as any way leads: only then, 16 states
+    /// are one node.
+    bool is_open(std::size_t place) const
+    {
+        constexpr auto all = HeadingSet(~0u);
+        return valid[place] == all && first_node[place + 1] == first_node[place] + 1;
+    }
+
     /// Calls visit(place, x, y) for each place, in their order.
     template <class Visit>
     void for_each_place(const Visit& visit) const

@@ -13,8 +13,6 @@ constexpr double limit_slack = 1e-9;  // m, in comparisons with limits
 constexpr int turn_pieces = 4;        // of a way on which the robot turns
 constexpr double large_tilt = 0.1;    // rad: if roll or pitch change by more, a way has as many pieces
 
-double turn_between(double yaw, double other) { return std::remainder(other - yaw, 2 * std::numbers::pi); }
-
 /// Returns the direction of a heading, of length 1.
 Vec2 direction_of(int heading)
 {
@@ -214,6 +212,45 @@ std::optional<std::size_t> WayJudge::place_near(const SettledPose& pose, const V
     set_start(from);
     const StatePose begin{.z = pose.position.z(), .roll = pose.roll, .pitch = pose.pitch};
     return can_follow(course, begin, settled(to, places[*k].ground, heading)) ? k : std::nullopt;
+}
+
+std::optional<double> WayJudge::ground_near(const Vec3& place, double most)
+{
+    std::optional<double> out;
+    for (const double height : columns_.column_at(place.head<2>()).layers) {
+        if (!(std::abs(height - place.z()) <= most)) continue;
+        most = std::abs(height - place.z());
+        out = height;
+    }
+    return out;
+}
+
+std::optional<SettledPose> WayJudge::go(const SettledPose& pose, const Vec2& to, double yaw)
+{
+    const Vec2 from = pose.position.head<2>();
+    const double ground = pose.ground->height, length = (to - from).norm();
+    std::vector<PlaceStates> places;
+    std::vector<SettledPose> poses;
+    const auto layers = heights_within(columns_.column_at(to).layers, shared_.map.z_limits);
+    for (const double height : std::vector(layers.begin(), layers.end())) {  // a copy: judging looks up columns, too
+        if (std::abs(height - ground) > length * steepest_ + max_step_ + limit_slack) continue;
+        SettledPose there = stand_.judge({to.x(), to.y(), height}, yaw);
+        if (there.verdict != Verdict::Valid) continue;
+        places.push_back({.ground = height, .valid = 1});
+        poses.push_back(std::move(there));
+    }
+    const Vec2 ahead = (to - from) / length;  // not used if the length is 0
+    const auto k = lowest_step(
+        length, ground, places, 0, [&] { return slope_at(from, ground, ahead); },
+        [&](const PlaceStates& other) { return slope_at(to, other.ground, -ahead); });
+    if (!k) return std::nullopt;
+    set_start(from);
+    const auto state = [](const SettledPose& at) {
+        return StatePose{.z = at.position.z(), .roll = at.roll, .pitch = at.pitch};
+    };
+    const Course course{.begin = from, .end = to, .yaw = pose.yaw, .turn = turn_between(pose.yaw, yaw)};
+    if (!can_follow(course, state(pose), state(poses[*k]))) return std::nullopt;
+    return std::move(poses[*k]);
 }
 
 /// Returns the settled pose of a state.

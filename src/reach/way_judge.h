@@ -10,12 +10,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace spawnfield {
+
+/// Returns by how much a robot turns from one yaw to another one, -pi .. pi, rad.
+inline double turn_between(double yaw, double other) { return std::remainder(other - yaw, 2 * std::numbers::pi); }
 
 /// A settled pose; x, y and yaw are known from where it is.
 struct StatePose {
@@ -81,6 +85,17 @@ public:
     /// settled pose, where it then stands at a heading. The poses of the places are not used.
     std::optional<std::size_t> place_near(const SettledPose& pose, const Vec2& to, std::span<const PlaceStates> places,
                                           int heading);
+
+    /// Returns the largest height by which ground that is proven to be level is not even, m.
+    double flatness() const { return level_.flatness(); }
+    /// Returns the height of the layer at (x, y) that is nearest to z, if it is at most `most` (m) away.
+    std::optional<double> ground_near(const Vec3& place, double most);
+    /// Returns the settled pose on the ground at a place.
+    SettledPose stand(const Vec3& ground, double yaw) { return stand_.judge(ground, yaw); }
+    /// Returns the valid settled pose at a point at most longest_way away, at a yaw at most a sixteenth of a turn away,
+    /// to which the robot can go straight from a valid settled pose. As on the ways of a graph, it is on the layer with
+    /// the smallest step.
+    std::optional<SettledPose> go(const SettledPose& pose, const Vec2& to, double yaw);
 
 private:
     template <class Slope, class OtherSlope>

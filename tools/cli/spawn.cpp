@@ -29,8 +29,9 @@ struct PairArgs {
     long long count = 0;
     double min_path = 0, max_path = std::numeric_limits<double>::infinity(), detour = 1;  ///< m, m, ratio
     std::string path;                                                                     ///< file
+    bool fast_paths = false;
 };
-const std::vector<std::string> pair_option_names{"--min-path", "--max-path", "--detour", "--path"};
+const std::vector<std::string> pair_option_names{"--min-path", "--max-path", "--detour", "--path", "--fast-paths"};
 
 struct SpawnArgs : QueryArgs {
     DrawArgs draws;
@@ -339,6 +340,7 @@ Ending run_pairs(const SpawnArgs& args, const CLI::App& command, Summary& summar
                         .min_path = args.pairs.min_path,
                         .max_path = args.pairs.max_path,
                         .min_detour = args.pairs.detour,
+                        .shorten = !args.pairs.fast_paths,
                         .keep_paths = !args.pairs.path.empty()};
     options.spawns.count = std::size_t(args.pairs.count);
     const ZRange heights = heights_of(args.ground, options.spawns.bounds, "--region");
@@ -469,6 +471,9 @@ void add_sample(CLI::App& app, ChosenCommand& chosen)
     command.add_option("--detour", args->pairs.detour,
                        "Smallest ratio of the path's length to the straight line, >= 1 (default 1)");
     command.add_option("--path", args->pairs.path, "CSV file to write: the poses on the path of each pair");
+    command.add_flag("--fast-paths", args->pairs.fast_paths,
+                     "Paths of pairs have 16 headings only: in the open they are up to 2.8 % longer, but are found in "
+                     "about a tenth of the time");
     add_places(command, args->places);
     add_spawn_groups(command, *args);
     command.footer(
