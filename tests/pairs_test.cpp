@@ -4,12 +4,18 @@
 #include "temp_folder.h"
 #include "test_map.h"
 
-#include <spawnfield/pairs.h>
+#include <spawnfield/frames.h>
+#include <spawnfield/pair_files.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+
+#include <nlohmann/json.hpp>
+#include <yaml-cpp/yaml.h>
 
 using namespace spawnfield;
+using Json = nlohmann::json;
 using rest_robots::add_block;
 using rest_robots::boxy;
 
@@ -155,6 +161,80 @@ TEST_CASE("sample --pairs writes pairs and paths, all poses of which are valid f
     }
 }
 
+TEST_CASE("all formats of pairs have the poses and lengths of the CSV file")
+{
+    const RoomsFolder rooms;
+    const std::string options = "--pairs 7 --min-path 1 --yaw random --reach-step 0.1 --seed 4 --island largest ";
+    const auto run = [&](const std::string& more) {
+        const ProgramRun out = rooms.sample(options + more);
+        REQUIRE(out.status == 0);
+        return out.out;
+    };
+    std::string csv = run("");
+    // The same columns for the goals as those of a table of poses.
+    const std::vector<std::string> names{"x", "y", "z", "roll", "pitch", "yaw"};
+    const auto poses_of = [&](const std::string& end) {
+        std::string text = csv;
+        for (const std::string& name : names) text.replace(text.find(end + name + ","), end.size() + name.size(), name);
+        return parse_poses(text, "pairs");
+    };
+    const PoseTable starts = poses_of("start_"), goals = poses_of("goal_");
+    REQUIRE(starts.poses.size() == 7);
+    const auto length = [&](std::size_t k) { return std::stod(column_of(starts, "path_length")[k]); };
+    constexpr double lift = 0.02;
+    const Vec3 up(0, 0, lift);
+
+    const Json json = Json::parse(run("--format json"));
+    CHECK(json["format"] == "spawnfield-pairs/1");
+    CHECK(json["settings"]["min_path"] == 1);
+    CHECK(json["settings"]["islands"] == "island largest");
+    REQUIRE(json["pairs"].size() == 7);
+    const YAML::Node nav2 = YAML::Load(run("--format nav2-goals"));
+    REQUIRE(nav2.size() == 7);
+    rooms.sample(options + "--format habitat --scene-id data/rooms.glb -o rooms.json.gz");
+    REQUIRE(std::system(
+                ("gzip -dc " + (rooms / "rooms.json.gz").string() + " > " + (rooms / "rooms.json").string()).c_str()) ==
+            0);
+    const Json habitat = Json::parse(bytes_of(rooms / "rooms.json"));
+    REQUIRE(habitat["episodes"].size() == 7);
+
+    const auto check_position = [](const Vec3& found, const Vec3& wanted) { CHECK((found - wanted).norm() < 1e-9); };
+    for (std::size_t k = 0; k < 7; ++k) {
+        CAPTURE(k);
+        const auto vec = [](const Json& xyz) { return Vec3(xyz[0], xyz[1], xyz[2]); };
+        const Json& pair = json["pairs"][k];
+        check_position(vec(pair["start"]["position"]), starts.poses[k].position);
+        check_position(vec(pair["goal"]["position"]), goals.poses[k].position);
+        CHECK(double(pair["start"]["rpy"][2]) == Approx(rpy_from(starts.poses[k].rotation).yaw));
+        CHECK(double(pair["path_length"]) == length(k));
+
+        for (const auto& [name, poses] : {std::pair("start", &starts.poses), std::pair("goal", &goals.poses)}) {
+            const YAML::Node stamped = nav2[k][name], at = stamped["pose"]["position"],
+                             turn = stamped["pose"]["orientation"];
+            CHECK(stamped["header"]["frame_id"].as<std::string>() == "map");
+            check_position({at["x"].as<double>(), at["y"].as<double>(), at["z"].as<double>()},
+                           (*poses)[k].position - up);
+            const Eigen::Quaterniond rotation(turn["w"].as<double>(), turn["x"].as<double>(), turn["y"].as<double>(),
+                                              turn["z"].as<double>());
+            check_position(rotation * Vec3::UnitX(), (*poses)[k].rotation * Vec3::UnitX());
+        }
+        CHECK(nav2[k]["path_length"].as<double>() == length(k));
+
+        // Habitat: x to the right, y up, z backwards; an agent looks along -z of its own frame.
+        const Json& episode = habitat["episodes"][k];
+        const auto in_map = [](const Vec3& point) { return Vec3(point.x(), -point.z(), point.y()); };
+        CHECK(episode["episode_id"] == std::to_string(k));
+        CHECK(episode["scene_id"] == "data/rooms.glb");
+        check_position(in_map(vec(episode["start_position"])), starts.poses[k].position - up);
+        check_position(in_map(vec(episode["goals"][0]["position"])), goals.poses[k].position - up);
+        const Json& turn = episode["start_rotation"];
+        const auto part = [&](int axis) { return turn[std::size_t(axis)].get<double>(); };
+        const Eigen::Quaterniond rotation(part(3), part(0), part(1), part(2));
+        check_position(in_map(rotation * -Vec3::UnitZ()), starts.poses[k].rotation * Vec3::UnitX());
+        CHECK(double(episode["info"]["geodesic_distance"]) == length(k));
+    }
+}
+
 TEST_CASE("faults in the options of pairs are named with their values and what to do")
 {
     const RoomsFolder rooms;
@@ -174,5 +254,7 @@ TEST_CASE("faults in the options of pairs are named with their values and what t
     refuses("--pairs 5 --min-path 3 --max-path 2", "--max-path is 2");
     refuses("--pairs 5 --detour 0.9", "--detour is 0.9");
     refuses("--pairs 5 --stance level", "only for settled robots");
-    refuses("--pairs 5 --format json", "--pairs writes only csv");
+    refuses("--pairs 5 --format sdf", "--format is sdf, but --pairs writes csv, json, habitat or nav2-goals");
+    refuses("-n 5 --format habitat", "--format habitat is only for --pairs");
+    refuses("--pairs 5 --format json --scene-id a", "--scene-id is only for --format habitat");
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <string>
 #include <vector>
 
 namespace spawnfield {
@@ -50,13 +49,5 @@ struct PairList {
 /// The result is the same for any number of threads. The judge must be that of the graph. Throws ArgumentError for
 /// options beyond their limits and for a graph that does not keep its ways, FileError for a damaged map.
 SPAWNFIELD_API PairList sample_pairs(const Judge& judge, const ReachGraph& graph, const PairOptions& options);
-
-/// Returns a table with start_x,start_y,start_z,start_roll,start_pitch,start_yaw, the same of the goal (goal_x, …), and
-/// path_length,straight,detour,island. m and rad; poses are raised by StandLimits::lift.
-SPAWNFIELD_API std::string pairs_csv(const PairList& list, double lift);
-
-/// Returns a table with pair,pose,x,y,z,roll,pitch,yaw: the poses of all paths, raised by the lift. Pairs and poses
-/// count from 0.
-SPAWNFIELD_API std::string paths_csv(const PairList& list, double lift);
 
 }  // namespace spawnfield

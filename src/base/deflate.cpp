@@ -29,17 +29,29 @@ void inflate_into(std::string_view stream, char* out, std::size_t size)
         throw std::runtime_error("a compressed tile is damaged");
 }
 
+/// Calls the functions of libdeflate for a format.
+template <class Bound, class Compress>
+std::string compressed(std::string_view bytes, const Bound& bound_of, const Compress& compress)
+{
+    thread_local const Compressor compressor(libdeflate_alloc_compressor(level));
+    if (!compressor) throw std::bad_alloc();
+    const std::size_t bound = bound_of(compressor.get(), bytes.size());
+    const auto out = std::make_unique_for_overwrite<char[]>(bound);
+    const std::size_t size = compress(compressor.get(), bytes.data(), bytes.size(), out.get(), bound);
+    if (size == 0) throw std::runtime_error("libdeflate cannot compress");
+    return {out.get(), size};
+}
+
 }  // namespace
 
 std::string deflate_bytes(std::string_view bytes)
 {
-    thread_local const Compressor compressor(libdeflate_alloc_compressor(level));
-    if (!compressor) throw std::bad_alloc();
-    const std::size_t bound = libdeflate_zlib_compress_bound(compressor.get(), bytes.size());
-    const auto out = std::make_unique_for_overwrite<char[]>(bound);
-    const std::size_t size = libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), out.get(), bound);
-    if (size == 0) throw std::runtime_error("libdeflate cannot compress");
-    return {out.get(), size};
+    return compressed(bytes, libdeflate_zlib_compress_bound, libdeflate_zlib_compress);
+}
+
+std::string gzip_bytes(std::string_view bytes)
+{
+    return compressed(bytes, libdeflate_gzip_compress_bound, libdeflate_gzip_compress);
 }
 
 std::string inflate_bytes(std::string_view stream, std::size_t size)

@@ -10,6 +10,9 @@ namespace spawnfield {
 /// streams.
 std::string deflate_bytes(std::string_view bytes);
 
+/// Returns the bytes as a gzip file (RFC 1952) without a name and a time. Equal bytes give equal files.
+std::string gzip_bytes(std::string_view bytes);
+
 /// Returns the bytes of a zlib stream. Throws std::runtime_error unless it is complete and contains exactly `size`
 /// bytes.
 std::string inflate_bytes(std::string_view stream, std::size_t size);

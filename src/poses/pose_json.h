@@ -1,6 +1,8 @@
 #pragma once
 
+#include <spawnfield/judge.h>
 #include <spawnfield/map.h>
+#include <spawnfield/query.h>
 #include <spawnfield/robot.h>
 #include <spawnfield/settled_pose.h>
 #include <spawnfield/simulators.h>
@@ -21,6 +23,9 @@ Json pose_json(const RobotStart& robot);
 
 /// Adds the limits of settled poses to the settings of a query.
 void add_stand_limits(Json& settings, const StandLimits& limits);
+
+/// Returns the settings of `sample`. Limits that are infinite are left out.
+Json sample_settings_json(const SampleOptions& options, const Judge& judge);
 
 /// Returns the name of a robot's part, or its number from 1 on.
 std::string part_name(const Robot& robot, std::size_t part);

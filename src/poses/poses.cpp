@@ -440,8 +440,7 @@ std::string spawns_csv(const SpawnList& list, std::span<const std::string> names
     return text;
 }
 
-std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,
-                        const SampleOptions& options)
+Json sample_settings_json(const SampleOptions& options, const Judge& judge)
 {
     Json settings = settings_json(options, judge, 2);
     if (options.stance == Stance::Settled)
@@ -456,7 +455,13 @@ std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& lis
     if (measures_view(options.measures)) settings["view_range"] = options.measures.view_range;
     if (!options.place.facing.empty()) settings["yaw"] = "facing " + options.place.facing;
     if (!options.reachable_name.empty()) settings["islands"] = options.reachable_name;
-    Json out = json_head("sample", judge.map(), judge.robot(), std::move(settings));
+    return settings;
+}
+
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,
+                        const SampleOptions& options)
+{
+    Json out = json_head("sample", judge.map(), judge.robot(), sample_settings_json(options, judge));
     out["full"] = list.is_full;
     out["undecided_area"] = list.undecided_area;
     return with_spawns(std::move(out), list, robots);

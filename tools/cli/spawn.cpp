@@ -6,6 +6,7 @@
 #include "messages.h"
 #include "numbers.h"
 #include "output.h"
+#include "pair_args.h"
 #include "place_args.h"
 #include "reach_args.h"
 #include "simulator_output.h"
@@ -15,23 +16,12 @@
 #include "thesis_output.h"
 
 #include <spawnfield/error.h>
-#include <spawnfield/pairs.h>
 
 #include <cctype>
 #include <cstdio>
-#include <limits>
 
 namespace spawnfield::cli {
 namespace {
-
-/// Options on pairs of a start and a goal.
-struct PairArgs {
-    long long count = 0;
-    double min_path = 0, max_path = std::numeric_limits<double>::infinity(), detour = 1;  ///< m, m, ratio
-    std::string path;                                                                     ///< file
-    bool fast_paths = false;
-};
-const std::vector<std::string> pair_option_names{"--min-path", "--max-path", "--detour", "--path", "--fast-paths"};
 
 struct SpawnArgs : QueryArgs {
     DrawArgs draws;
@@ -293,55 +283,11 @@ void complete(SampleOptions& asked, const ZRange& heights, const SpawnArgs& args
     notice_about_heading(args, session.map, asked.heading);
 }
 
-/// Throws ArgumentError for options that pairs do not have.
-void check_pairs(const SpawnArgs& args, const CLI::App& command)
-{
-    refuse(command, {"--count", "--min-distance", "--columns"}, "has no effect with --pairs; leave it out");
-    if (!args.is_settled())
-        throw ArgumentError(
-            "--pairs is only for settled robots, because paths lead between settled poses; leave "
-            "--stance level out");
-    if (args.format != "csv") throw ArgumentError("--format is " + args.format + ", but --pairs writes only csv");
-    if (args.pairs.count < 1 || args.pairs.count > static_cast<long long>(max_spawns))
-        throw bad_value("--pairs", double(args.pairs.count), "1 to " + std::to_string(max_spawns));
-    parse_finite("--min-path", args.pairs.min_path, "m");
-    parse_finite("--detour", args.pairs.detour, "");
-    if (args.pairs.min_path < 0) throw bad_value("--min-path", args.pairs.min_path, ">= 0 m");
-    if (!(args.pairs.max_path >= args.pairs.min_path) || args.pairs.max_path <= 0)
-        throw bad_value("--max-path", args.pairs.max_path, "> 0 m, and not below --min-path");
-    if (args.pairs.detour < 1) throw bad_value("--detour", args.pairs.detour, ">= 1");
-}
-
-/// Returns why there are fewer pairs than wanted, and what may give more.
-std::string shortfall_of_pairs(const PairList& list, std::size_t wanted)
-{
-    return "only " + std::to_string(list.pairs.size()) + " of " + std::to_string(wanted) +
-           " pairs were found: " + std::to_string(list.without_goal) + " of " + counted(list.starts, "drawn start") +
-           " have no goal that was found (" + counted(list.searches, "path") +
-           " searched); a smaller --min-path or --detour, a larger --max-path or region, or other islands may give "
-           "more";
-}
-
-void write_pairs(const SpawnArgs& args, const PairList& list, double lift)
-{
-    const auto write_paths = [&] {
-        if (!args.pairs.path.empty())
-            write_output(args.pairs.path, [&](const auto& sink) { sink(paths_csv(list, lift)); });
-    };
-    write_output(
-        args.out, [&](const auto& sink) { sink(pairs_csv(list, lift)); }, write_paths);
-}
-
 Ending run_pairs(const SpawnArgs& args, const CLI::App& command, Summary& summary)
 {
-    check_pairs(args, command);
+    PairOptions options = pair_options(args.pairs, command, args.is_settled(), args.format);
     const IslandChoice asked_islands = island_choice(args, args.islands, command);
-    PairOptions options{.spawns = sample_options(args, command),
-                        .min_path = args.pairs.min_path,
-                        .max_path = args.pairs.max_path,
-                        .min_detour = args.pairs.detour,
-                        .shorten = !args.pairs.fast_paths,
-                        .keep_paths = !args.pairs.path.empty()};
+    options.spawns = sample_options(args, command);
     options.spawns.count = std::size_t(args.pairs.count);
     const ZRange heights = heights_of(args.ground, options.spawns.bounds, "--region");
     const YawChoice yaw = parse_yaw_choice(args, args.yaw, args.is_settled(), true);
@@ -355,11 +301,13 @@ Ending run_pairs(const SpawnArgs& args, const CLI::App& command, Summary& summar
     summary.lap("load");
     const IslandChoice islands = choice_for(session.map, args, args.islands, command, asked_islands, true);
     const ReachGraph graph = find_islands(args, args.islands, session, summary, "sample", true);
-    if (!islands.selects_all())
+    if (!islands.selects_all()) {
         options.spawns.is_reachable = on_islands(graph, chosen_islands(graph, *session.judge, islands));
+        options.spawns.reachable_name = words_of(islands);
+    }
     const PairList list = sample_pairs(*session.judge, graph, options);
     summary.lap("query");
-    write_pairs(args, list, session.judge->options().stand.lift);
+    write_pairs(args.pairs, args.format, args.out, session, list, options);
     summary.seed = options.spawns.seed;
     summary.extra.push_back(std::to_string(list.pairs.size()) + " of " + std::to_string(options.spawns.count) +
                             " pairs, " + counted(list.searches, "path") + " searched");
@@ -371,7 +319,7 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
 {
     if (command.count("--pairs") > 0) return run_pairs(args, command, summary);
     if (command.count("--count") == 0) throw ArgumentError("--count is required, or --pairs");
-    refuse(command, pair_option_names, "is only for --pairs; give it, or leave this option out");
+    refuse_pair_options(command, args.format);
     check_draws(args.draws);
     IslandChoice islands = island_choice(args, args.islands, command);
     SampleOptions options = sample_options(args, command);
@@ -402,7 +350,8 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
 }
 
 /// Adds the most common options.
-void add_common_spawn_options(CLI::App& command, SpawnArgs& args)
+/// `more_formats`: values of --format besides those of poses.
+void add_common_spawn_options(CLI::App& command, SpawnArgs& args, const std::vector<std::string>& more_formats = {})
 {
     add_map_and_robot(command, args);
     add_draws(command, args.draws);
@@ -411,11 +360,14 @@ void add_common_spawn_options(CLI::App& command, SpawnArgs& args)
     command.add_option("--out,-o", args.out, "File, or folder, to write (default: standard output)");
     std::vector<std::string> formats = pose_formats;
     formats.push_back("thesis");
+    formats.insert(formats.end(), more_formats.begin(), more_formats.end());
     command
         .add_option(
             "--format", args.format,
             "csv, json, thesis (a folder of Valid_Locations.txt and similar files), or a file for a simulator: " +
-                CLI::detail::join(std::vector(pose_formats.begin() + 2, pose_formats.end()), ", ") + " (default csv)")
+                CLI::detail::join(std::vector(pose_formats.begin() + 2, pose_formats.end()), ", ") +
+                (more_formats.empty() ? "" : "; with --pairs: csv, json, " + CLI::detail::join(more_formats, ", ")) +
+                " (default csv)")
         ->check(one_of(formats).description(""));
 }
 
@@ -458,22 +410,12 @@ void add_sample(CLI::App& app, ChosenCommand& chosen)
 {
     auto args = std::make_shared<SpawnArgs>();
     CLI::App& command = *app.add_subcommand("sample", "N valid spawns, uniform by area");
-    add_common_spawn_options(command, *args);
+    add_common_spawn_options(command, *args, pair_formats);
     add_ground(command, args->ground, "all, top, bottom, or N from the top (0 first; default all)");
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Settled);
     add_islands(command, args->islands);
-    command.add_option("--pairs", args->pairs.count,
-                       "Write this number of pairs of a start and a goal on one island, in place of spawns, with the "
-                       "length of the shortest path");
-    command.add_option("--min-path", args->pairs.min_path, "m: shortest path of a pair (default 0)");
-    command.add_option("--max-path", args->pairs.max_path, "m: longest path of a pair (default: any)");
-    command.add_option("--detour", args->pairs.detour,
-                       "Smallest ratio of the path's length to the straight line, >= 1 (default 1)");
-    command.add_option("--path", args->pairs.path, "CSV file to write: the poses on the path of each pair");
-    command.add_flag("--fast-paths", args->pairs.fast_paths,
-                     "Paths of pairs have 16 headings only: in the open they are up to 2.8 % longer, but are found in "
-                     "about a tenth of the time");
+    add_pairs(command, args->pairs);
     add_places(command, args->places);
     add_spawn_groups(command, *args);
     command.footer(

@@ -1,4 +1,3 @@
-#include "base/number.h"
 #include "base/parallel.h"
 #include "query/draw.h"
 #include "reach/path_search.h"
@@ -144,51 +143,12 @@ private:
     PerThread<Search> searches_;
 };
 
-void append_pose(std::string& text, const SettledPose& pose, double lift)
-{
-    for (const double value : {pose.position.x(), pose.position.y(), pose.position.z() + lift, pose.roll, pose.pitch}) {
-        append_number(text, value);
-        text += ',';
-    }
-    append_number(text, pose.yaw);
-}
-
 }  // namespace
 
 PairList sample_pairs(const Judge& judge, const ReachGraph& graph, const PairOptions& options)
 {
     check_pair_options(options);
     return PairSampler(judge, graph, options).run();
-}
-
-std::string pairs_csv(const PairList& list, double lift)
-{
-    std::string text =
-        "start_x,start_y,start_z,start_roll,start_pitch,start_yaw,goal_x,goal_y,goal_z,goal_roll,"
-        "goal_pitch,goal_yaw,path_length,straight,detour,island\n";
-    for (const StartGoal& pair : list.pairs) {
-        append_pose(text, pair.start, lift);
-        text += ',';
-        append_pose(text, pair.goal, lift);
-        for (const double value : {pair.path_length, pair.straight, pair.detour()}) {
-            text += ',';
-            append_number(text, value);
-        }
-        text += ',' + std::to_string(pair.island) + '\n';
-    }
-    return text;
-}
-
-std::string paths_csv(const PairList& list, double lift)
-{
-    std::string text = "pair,pose,x,y,z,roll,pitch,yaw\n";
-    for (std::size_t i = 0; i < list.pairs.size(); ++i)
-        for (std::size_t k = 0; k < list.pairs[i].path.size(); ++k) {
-            text += std::to_string(i) + ',' + std::to_string(k) + ',';
-            append_pose(text, list.pairs[i].path[k], lift);
-            text += '\n';
-        }
-    return text;
 }
 
 }  // namespace spawnfield
