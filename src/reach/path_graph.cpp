@@ -33,7 +33,7 @@ std::uint8_t shape_of(Way way, int heading)
         const int between = way == Way::Left ? heading : lattice_heading(heading, -1);  // this heading and the next one
         return between % 4 == 0 || between % 4 == 3 ? 3 : 4;
     }
-    return heading % 4 == 3 ? 1 : std::uint8_t(heading % 4);
+    return std::uint8_t(heading % 4 == 3 ? 1 : heading % 4);
 }
 
 /// Returns a way of each shape.
