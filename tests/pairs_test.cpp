@@ -235,6 +235,107 @@ TEST_CASE("all formats of pairs have the poses and lengths of the CSV file")
     }
 }
 
+TEST_CASE("judge_pairs finds the paths that sample_pairs has found, and says why others are not valid")
+{
+    const Rooms rooms;
+    PairOptions options{.spawns = {.count = 30, .random_yaw = true, .seed = 9, .threads = 1}, .min_path = 1};
+    const PairList list = rooms(options);
+    REQUIRE(list.pairs.size() == 30);
+    std::vector<Pose> starts, goals;
+    const auto raised = [](const SettledPose& pose) {
+        return Pose{pose.position + 0.02 * Vec3::UnitZ(), rotation_of_rpy(pose.roll, pose.pitch, pose.yaw)};
+    };
+    for (const StartGoal& pair : list.pairs) {
+        starts.push_back(raised(pair.start));
+        goals.push_back(raised(pair.goal));
+    }
+    const auto judged = judge_pairs(rooms.judge, rooms.graph, starts, goals, options);
+    for (std::size_t k = 0; k < judged.size(); ++k) {
+        CAPTURE(k);
+        CHECK(judged[k].verdict == PairVerdict::Valid);
+        CHECK(*judged[k].path_length == list.pairs[k].path_length);
+        CHECK(*judged[k].straight == list.pairs[k].straight);
+        CHECK(judged[k].start_island == list.pairs[k].island);
+    }
+    for (const int threads : {2, 8}) {
+        options.spawns.threads = threads;
+        const auto again = judge_pairs(rooms.judge, rooms.graph, starts, goals, options);
+        for (std::size_t k = 0; k < judged.size(); ++k) CHECK(again[k].path_length == judged[k].path_length);
+    }
+    // Each limit is the first one that does not hold.
+    const auto verdict = [&](const Vec3& start, const Vec3& goal, const PairOptions& limits = {}) {
+        const Pose from{start}, to{goal};
+        return judge_pairs(rooms.judge, rooms.graph, std::span(&from, 1), std::span(&to, 1), limits)[0].verdict;
+    };
+    const Vec3 left(-2, -1, 0.02), middle(0, -1, 0.02), right(2, 0, 0.02);
+    CHECK(verdict(left, middle) == PairVerdict::Valid);
+    CHECK(verdict(left, right) == PairVerdict::Unreachable);
+    CHECK(verdict(left + Vec3::UnitX(), middle) == PairVerdict::StartNotValid);  // in the wall
+    CHECK(verdict(left, middle - Vec3::UnitX()) == PairVerdict::GoalNotValid);
+    CHECK(verdict(left, middle + 3 * Vec3::UnitZ()) == PairVerdict::GoalNotValid);
+    // Around the wall, whose end is at y = 1: more than twice the way from there.
+    const double least = 2 * std::hypot(1, 2);
+    CHECK(verdict(left, middle, {.max_path = least}) == PairVerdict::TooLong);
+    CHECK(verdict(left, middle, {.min_path = least, .max_path = least + 1}) == PairVerdict::Valid);
+    CHECK(verdict(left, middle, {.min_path = least + 1}) == PairVerdict::TooShort);
+    CHECK(verdict(left, middle, {.min_detour = least / 2}) == PairVerdict::Valid);
+    CHECK(verdict(left, middle, {.min_detour = least / 2 + 0.5}) == PairVerdict::TooDirect);
+    CHECK_THROWS_WITH(judge_pairs(rooms.judge, rooms.graph, starts, {}, {}), Contains("as many as starts"));
+}
+
+TEST_CASE("check --pairs accepts the pairs of sample, and adds its verdicts to those of a file")
+{
+    const RoomsFolder rooms;
+    const std::string robot = "--robot box:0.3,0.3,0.2 --reach-step 0.1 ";
+    REQUIRE(rooms.sample("--pairs 12 --min-path 1 --yaw random --reach-step 0.1 -o pairs.csv").status == 0);
+    const ProgramRun all = run_program(rooms, "check rooms " + robot + "--pairs pairs.csv --require-valid");
+    CHECK(all.status == 0);
+    CHECK_THAT(all.err, Contains("12 pairs: 12 valid"));
+    const PairTable before = parse_pairs(bytes_of(rooms / "pairs.csv"), "before"),
+                    after = parse_pairs(all.out, "after");
+    for (const std::string name : {"start_x", "goal_yaw", "path_length", "straight", "detour", "island"})
+        CHECK(column_of(before.starts, name) == column_of(after.starts, name));
+    CHECK(column_of(after.goals, "pair_verdict") == std::vector<std::string>(12, "valid"));
+    for (const std::string threads : {"1", "8"})
+        CHECK(run_program(rooms, "check rooms " + robot + "--pairs pairs.csv --threads " + threads).out == all.out);
+
+    rooms.write("given.csv",
+                "name,start_x,start_y,start_z,goal_x,goal_y,goal_z,goal_yaw_deg\n"
+                "a,-2,0,0.1,-1,0,0.1,90\nb,-2,0,0.1,1,0,0.1,0\nc,-2,0,5,-1,0,0.1,0\n");
+    const ProgramRun given = run_program(rooms, "check rooms " + robot + "--pairs given.csv --require-valid");
+    CHECK(given.status == 3);
+    const PoseTable table = parse_pairs(given.out, "given").starts;
+    CHECK(column_of(table, "name") == std::vector<std::string>{"a", "b", "c"});
+    CHECK(column_of(table, "pair_verdict") == std::vector<std::string>{"valid", "unreachable", "start_not_valid"});
+    CHECK(column_of(table, "start_verdict") == std::vector<std::string>{"valid", "valid", "aerial"});
+    CHECK(std::stod(column_of(table, "path_length")[0]) == Approx(1).margin(1e-9));
+    CHECK(column_of(table, "path_length")[1].empty());
+    CHECK_THAT(given.err, Contains("2 of 3 pairs are not valid") &&
+                              Contains("pair 2: unreachable: the start is on island 0, the goal on island 1") &&
+                              Contains("pair 3: start_not_valid: aerial: 5 m above the ground"));
+
+    const auto refuses = [&](const std::string& options, const std::string& message, int status = 2) {
+        CAPTURE(options);
+        const ProgramRun run = run_program(rooms, "check rooms --robot box:0.3,0.3,0.2 " + options);
+        CHECK(run.status == status);
+        CHECK(run.out.empty());
+        CHECK_THAT(run.err, Contains(message));
+    };
+    refuses("", "--poses is required, or --pairs");
+    refuses("--pairs given.csv --poses given.csv", "--poses has no effect with --pairs");
+    refuses("--pairs given.csv --repair 1", "--repair has no effect with --pairs");
+    refuses("--pairs given.csv --format json", "--pairs writes only csv");
+    refuses("--pairs given.csv --stance level", "--pairs is only for settled robots");
+    refuses("--pairs given.csv --min-path 2 --max-path 1", "--max-path is 1");
+    refuses("--poses given.csv --detour 2", "--detour is only for --pairs");
+    refuses("--poses given.csv --reach-step 1", "--reach-step is only for --pairs");
+    rooms.write("bad.csv", "start_x,start_y,start_z,goal_x,goal_y\n0,0,0,1,1\n");
+    refuses("--pairs bad.csv", "bad.csv: line 1: column goal_z is missing, needs a header with goal_x,goal_y,goal_z",
+            4);
+    rooms.write("bad.csv", "start_x,start_y,start_z,goal_x,goal_y,goal_z\n0,0,0,1,one,0\n");
+    refuses("--pairs bad.csv", "bad.csv: line 2: column goal_y is \"one\", needs a number", 4);
+}
+
 TEST_CASE("faults in the options of pairs are named with their values and what to do")
 {
     const RoomsFolder rooms;

@@ -1,11 +1,27 @@
 #pragma once
 
 #include <spawnfield/pairs.h>
+#include <spawnfield/poses.h>
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 /// Files of start and goal pairs.
 namespace spawnfield {
+
+/// Pairs of a CSV file. Both tables have the same rows.
+struct PairTable {
+    PoseTable starts, goals;
+};
+
+/// Reads pairs with the columns of pairs_csv(): start_x, … and goal_x, …, as in parse_poses(). Other columns are
+/// copied. Throws what parse_poses() throws.
+SPAWNFIELD_API PairTable parse_pairs(std::string_view text, const std::string& name, bool allow_empty = false);
+
+/// Returns the table with pair_verdict, start_verdict, goal_verdict (Verdict, by name), path_length, straight, detour
+/// and island (empty unless both are on it), in the place of columns with these names.
+SPAWNFIELD_API std::string judged_pairs_csv(const PairTable& table, const std::vector<JudgedPair>& pairs);
 
 /// Returns a table with start_x,start_y,start_z,start_roll,start_pitch,start_yaw, the same of the goal (goal_x, …), and
 /// path_length,straight,detour,island. m and rad; poses are raised by StandLimits::lift.

@@ -4,7 +4,10 @@
 #include <spawnfield/query.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace spawnfield {
@@ -49,5 +52,39 @@ struct PairList {
 /// The result is the same for any number of threads. The judge must be that of the graph. Throws ArgumentError for
 /// options beyond their limits and for a graph that does not keep its ways, FileError for a damaged map.
 SPAWNFIELD_API PairList sample_pairs(const Judge& judge, const ReachGraph& graph, const PairOptions& options);
+
+/// What judge_pairs() says about a pair; the first one that applies.
+enum class PairVerdict : std::uint8_t {
+    StartNotValid,  ///< the start is not a valid settled pose
+    GoalNotValid,
+    Unreachable,  ///< they are not on the same island
+    TooLong,      ///< the path is longer than PairOptions::max_path
+    TooShort,     ///< it is shorter than PairOptions::min_path
+    TooDirect,    ///< its detour is below PairOptions::min_detour
+    Valid
+};
+SPAWNFIELD_API const char* to_string(PairVerdict verdict);  ///< "start_not_valid", …, "valid"
+
+struct JudgedPair {
+    PairVerdict verdict = PairVerdict::Valid;
+    SettledPose start = {}, goal = {};                               ///< not raised
+    std::optional<std::size_t> start_island = {}, goal_island = {};  ///< indices in ReachGraph::islands()
+    std::optional<double> path_length = {};  ///< m; none: there is no path, or it is longer than max_path
+    std::optional<double> straight = {};     ///< m, between the ground at the start and at the goal, if both are valid
+
+    std::optional<double> detour() const
+    {
+        if (!path_length || !straight) return std::nullopt;
+        return *straight > 0 ? std::max(1.0, *path_length / *straight) : 1;
+    }
+};
+
+/// Lets the robot down at each start and each goal, and judges the pairs. Of the options, min_path, max_path,
+/// min_detour, shorten, and the threads and the progress of `spawns` are used. The result is the same for any number of
+/// threads. The judge must be that of the graph. Throws ArgumentError if there are not as many goals as starts, or if
+/// the graph does not keep its ways, FileError for a damaged map.
+SPAWNFIELD_API std::vector<JudgedPair> judge_pairs(const Judge& judge, const ReachGraph& graph,
+                                                   std::span<const Pose> starts, std::span<const Pose> goals,
+                                                   const PairOptions& options);
 
 }  // namespace spawnfield

@@ -26,8 +26,9 @@ struct PoseTable {
 /// also for a file without a pose.
 SPAWNFIELD_API PoseTable read_poses(const std::filesystem::path& file, bool allow_empty = false);
 
-/// The same for the text of a file. Messages use `name` as the file's name.
-SPAWNFIELD_API PoseTable parse_poses(std::string_view text, const std::string& name, bool allow_empty = false);
+/// The same for the text of a file. Messages use `name` as the file's name. Names of columns begin with `prefix`.
+SPAWNFIELD_API PoseTable parse_poses(std::string_view text, const std::string& name, bool allow_empty = false,
+                                     const std::string& prefix = {});
 
 /// Returns the x, y, z and yaw of poses, without roll and pitch, in the form that sample and search return.
 SPAWNFIELD_API std::vector<Spawn> spawns_of(const PoseTable& table);

@@ -1,14 +1,15 @@
 #include "base/deflate.h"
 #include "base/number.h"
+#include "poses/pose_columns.h"
 #include "poses/pose_json.h"
 
 #include <spawnfield/pair_files.h>
-#include <spawnfield/poses.h>
 
 #include <Eigen/Geometry>
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace spawnfield {
 namespace {
@@ -80,6 +81,29 @@ std::string paths_csv(const PairList& list, double lift)
             text += '\n';
         }
     return text;
+}
+
+PairTable parse_pairs(std::string_view text, const std::string& name, bool allow_empty)
+{
+    return {parse_poses(text, name, allow_empty, "start_"), parse_poses(text, name, allow_empty, "goal_")};
+}
+
+std::string judged_pairs_csv(const PairTable& table, const std::vector<JudgedPair>& pairs)
+{
+    const auto append = [&](std::string& text, std::size_t i) {
+        const JudgedPair& pair = pairs[i];
+        text += std::string(to_string(pair.verdict)) + ',' + to_string(pair.start.verdict) + ',' +
+                to_string(pair.goal.verdict);
+        for (const std::optional<double>& value : {pair.path_length, pair.straight, pair.detour()}) {
+            text += ',';
+            if (value) append_number(text, *value);
+        }
+        text += ',';
+        if (pair.start_island && pair.start_island == pair.goal_island) text += std::to_string(*pair.start_island);
+    };
+    return with_columns(
+        table.starts, {"pair_verdict", "start_verdict", "goal_verdict", "path_length", "straight", "detour", "island"},
+        append);
 }
 
 std::string pairs_json(const PairList& list, const Judge& judge, const PairOptions& options)

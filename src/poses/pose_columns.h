@@ -1,7 +1,10 @@
 #pragma once
 
+#include <spawnfield/poses.h>
+
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,6 +27,11 @@ inline const std::vector<std::string> settled_columns{"settled_z", "settled_roll
 inline const std::vector<std::string> repair_columns{"repair",       "repair_distance", "repair_x",
                                                      "repair_y",     "repair_z",        "repair_roll",
                                                      "repair_pitch", "repair_yaw",      "repair_tried"};
+
+/// Returns the table as CSV, with new columns at the end, in the place of old ones with the same names. append(text,
+/// index) appends the new fields of a row, with commas between them.
+std::string with_columns(const PoseTable& table, const std::vector<std::string>& names,
+                         const std::function<void(std::string&, std::size_t)>& append);
 
 /// Returns whether `check` writes a column with this name: one of the pose as given, or, if `settled`, also one of a
 /// robot that was let down, or, with `repairs`, one of a repair.

@@ -17,8 +17,6 @@ namespace spawnfield {
 namespace {
 
 constexpr double radians_per_degree = std::numbers::pi / 180;
-constexpr const char* needed_header =
-    "needs a header with x,y,z; roll,pitch,yaw (or roll_deg,pitch_deg,yaw_deg, or qx,qy,qz,qw) are optional";
 
 /// The column of an angle: roll, pitch or yaw.
 struct AngleColumn {
@@ -39,12 +37,12 @@ struct PoseColumns {
 
 class PoseReader {
 public:
-    explicit PoseReader(std::string name) : file_(std::move(name)) {}
+    PoseReader(std::string name, std::string prefix) : file_(std::move(name)), prefix_(std::move(prefix)) {}
 
     PoseTable read(std::string_view text, bool allow_empty)
     {
         PoseTable table;
-        PoseColumns columns{};
+        PoseColumns found{};
         bool has_header = false;
         for (std::size_t start = 0; start < text.size();) {
             const std::size_t end = std::min(text.find('\n', start), text.size());
@@ -55,18 +53,18 @@ public:
             if (!line.empty() && line.back() == '\r') line.pop_back();
             if (line.find_first_not_of(" \t") == std::string::npos) continue;
             if (!has_header) {
-                columns = read_header(line);
-                add_name_notices(line, columns, table);
+                found = read_header(line);
+                add_name_notices(line, found, table);
                 table.header = line;
                 has_header = true;
                 continue;
             }
             if (std::count(line.begin(), line.end(), '"') % 2 != 0) fail("has a quote that is not closed");
-            table.poses.push_back(read_pose(csv_fields(line), columns));
+            table.poses.push_back(read_pose(csv_fields(line), found));
             table.rows.push_back(std::move(line));
         }
-        if (!has_header) throw FileError(file_, std::string("is empty, ") + needed_header);
-        add_turn_notices(columns, table);
+        if (!has_header) throw FileError(file_, "is empty, " + needed_header());
+        add_turn_notices(found, table);
         if (!table.poses.empty()) return table;
         if (!allow_empty) throw FileError(file_, "has a header but no pose; --allow-empty accepts that");
         table.notices.push_back(file_ + ": has a header but no pose");
@@ -74,13 +72,27 @@ public:
     }
 
 private:
+    /// Returns "roll_deg,pitch_deg" for "roll_deg pitch_deg", with the prefix before each name.
+    std::string columns(const std::string& names) const
+    {
+        std::string out = prefix_ + names;
+        for (std::size_t at = 0; (at = out.find(' ', at)) != std::string::npos;) out.replace(at, 1, "," + prefix_);
+        return out;
+    }
+    std::string needed_header() const
+    {
+        return "needs a header with " + columns("x y z") + "; " + columns("roll pitch yaw") + " (or " +
+               columns("roll_deg pitch_deg yaw_deg") + ", or " + columns("qx qy qz qw") + ") are optional";
+    }
+
     PoseColumns read_header(const std::string& line) const
     {
         if (const std::string complaint = separator_complaint(line); !complaint.empty()) fail(complaint);
         const auto names = csv_fields(line);
         if (are_numbers(names))
             fail("has numbers, needs a header before them: add the line " + likely_header(names.size()));
-        const auto find = [&](const std::string& name) {
+        const auto find = [&](const std::string& plain) {
+            const std::string name = prefix_ + plain;
             const auto column = std::find(names.begin(), names.end(), name);
             if (column != names.end() && std::find(column + 1, names.end(), name) != names.end())
                 fail("column " + name + " is given twice");
@@ -89,25 +101,30 @@ private:
         const auto angle = [&](const std::string& name) {
             const int radians = find(name), degrees = find(name + "_deg");
             if (radians >= 0 && degrees >= 0)
-                fail("has columns " + name + " and " + name + "_deg, needs one of the two");
-            return degrees >= 0 ? AngleColumn{name + "_deg", degrees, true} : AngleColumn{name, radians};
+                fail("has columns " + columns(name) + " and " + columns(name) + "_deg, needs one of the two");
+            return degrees >= 0 ? AngleColumn{columns(name) + "_deg", degrees, true}
+                                : AngleColumn{columns(name), radians};
         };
         PoseColumns c{find("x"),   find("y"),  find("z"),  find("qx"),
                       find("qy"),  find("qz"), find("qw"), {angle("roll"), angle("pitch"), angle("yaw")},
                       names.size()};
         for (const auto& axis : {std::pair{c.x, "x"}, std::pair{c.y, "y"}, std::pair{c.z, "z"}})
             if (axis.first < 0) {
-                const auto other = std::find_if(names.begin(), names.end(),
-                                                [&](const std::string& n) { return lower_case(n) == axis.second; });
-                fail(std::string("column ") + axis.second + " is missing" +
+                const auto other = std::find_if(names.begin(), names.end(), [&](const std::string& n) {
+                    return lower_case(n) == columns(axis.second);
+                });
+                fail("column " + columns(axis.second) + " is missing" +
                      (other == names.end() ? "" : " (there is " + *other + ", but names are lower case)") + ", " +
-                     needed_header);
+                     needed_header());
             }
         const int quaternions = (c.qx >= 0) + (c.qy >= 0) + (c.qz >= 0) + (c.qw >= 0);
-        if (quaternions != 0 && quaternions != 4) fail("has some of the columns qx,qy,qz,qw, needs all four or none");
+        if (quaternions != 0 && quaternions != 4)
+            fail("has some of the columns " + columns("qx qy qz qw") + ", needs all four or none");
         const bool has_angle = std::any_of(c.angles.begin(), c.angles.end(),
                                            [](const AngleColumn& a) { return a.field >= 0; });
-        if (quaternions == 4 && has_angle) fail("has columns qx,qy,qz,qw beside roll,pitch,yaw, needs one of the two");
+        if (quaternions == 4 && has_angle)
+            fail("has columns " + columns("qx qy qz qw") + " beside " + columns("roll pitch yaw") +
+                 ", needs one of the two");
         return c;
     }
 
@@ -120,10 +137,11 @@ private:
     }
 
     /// Adds a notice for each column that is not read although its name is known except for its case. If the file has
-    /// no yaw, also for each column with another name of the yaw.
-    void add_name_notices(const std::string& header, const PoseColumns& columns, PoseTable& table) const
+    /// no yaw, also for each column with another name of the yaw. Names with a prefix are not looked at.
+    void add_name_notices(const std::string& header, const PoseColumns& found, PoseTable& table) const
     {
-        const bool has_yaw = columns.has_quaternion() || columns.angles[2].field >= 0;
+        if (!prefix_.empty()) return;
+        const bool has_yaw = found.has_quaternion() || found.angles[2].field >= 0;
         for (const std::string& name : csv_fields(header)) {
             const std::string lower = lower_case(name), what = file_ + ": column " + name + " is copied but not read, ";
             if (name != lower && is_pose_column(lower))
@@ -149,9 +167,9 @@ private:
     }
 
     /// Adds a notice for each angle in radians with values beyond a whole turn.
-    void add_turn_notices(const PoseColumns& columns, PoseTable& table) const
+    void add_turn_notices(const PoseColumns& found, PoseTable& table) const
     {
-        for (const AngleColumn& angle : columns.angles) {
+        for (const AngleColumn& angle : found.angles) {
             if (angle.beyond_turn == 0) continue;
             const std::string more = angle.beyond_turn == 1
                                          ? ""
@@ -198,25 +216,28 @@ private:
         if (column < 0) return 0;
         double value = 0;
         const std::string& text = fields[std::size_t(column)];
-        if (!parse_number(text, value)) fail(std::string("column ") + name + " is \"" + text + "\", needs a number");
-        if (!std::isfinite(value)) fail(std::string("column ") + name + " is " + text + ", needs a finite number");
+        if (!parse_number(text, value)) fail("column " + prefixed(name) + " is \"" + text + "\", needs a number");
+        if (!std::isfinite(value)) fail("column " + prefixed(name) + " is " + text + ", needs a finite number");
         return value;
     }
+
+    /// Returns the name of a column; those of angles have the prefix already.
+    std::string prefixed(const std::string& name) const { return name.starts_with(prefix_) ? name : prefix_ + name; }
 
     [[noreturn]] void fail(const std::string& what) const
     {
         throw FileError(file_, "line " + std::to_string(line_) + ": " + what);
     }
 
-    const std::string file_;
+    const std::string file_, prefix_;
     int line_ = 0;
 };
 
 }  // namespace
 
-PoseTable parse_poses(std::string_view text, const std::string& name, bool allow_empty)
+PoseTable parse_poses(std::string_view text, const std::string& name, bool allow_empty, const std::string& prefix)
 {
-    return PoseReader(name).read(text, allow_empty);
+    return PoseReader(name, prefix).read(text, allow_empty);
 }
 
 PoseTable read_poses(const std::filesystem::path& file, bool allow_empty)

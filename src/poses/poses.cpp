@@ -224,23 +224,13 @@ void append_repair(std::string& text, const std::optional<Repair>& repair)
 template <class Append>
 std::string table_csv(const PoseTable& table, bool settled, const RepairList* repairs, const Append& append)
 {
-    std::vector<std::uint8_t> replaced;
-    for (const std::string& name : csv_fields(table.header))
-        replaced.push_back(is_verdict_column(name, settled, repairs != nullptr));
     std::vector<std::string> names = verdict_columns;
     if (settled) names.insert(names.end(), settled_columns.begin(), settled_columns.end());
     if (repairs != nullptr) names.insert(names.end(), repair_columns.begin(), repair_columns.end());
-    std::string text;
-    append_fields(text, table.header, replaced);
-    for (std::size_t k = 0; k < names.size(); ++k) text += (k > 0 ? "," : "") + names[k];
-    text += '\n';
-    for (std::size_t i = 0; i < table.poses.size(); ++i) {
-        append_fields(text, table.rows[i], replaced);
+    return with_columns(table, names, [&](std::string& text, std::size_t i) {
         append(text, i);
         if (repairs != nullptr) append_repair(text, repairs->repairs[i]);
-        text += '\n';
-    }
-    return text;
+    });
 }
 
 /// Appends verdict,ground,height_above,hit.
@@ -275,6 +265,24 @@ void name_all(std::vector<RobotStart>& robots, const std::vector<std::string>& n
 }
 
 }  // namespace
+
+std::string with_columns(const PoseTable& table, const std::vector<std::string>& names,
+                         const std::function<void(std::string&, std::size_t)>& append)
+{
+    std::vector<std::uint8_t> replaced;
+    for (const std::string& name : csv_fields(table.header))
+        replaced.push_back(std::find(names.begin(), names.end(), name) != names.end());
+    std::string text;
+    append_fields(text, table.header, replaced);
+    for (std::size_t k = 0; k < names.size(); ++k) text += (k > 0 ? "," : "") + names[k];
+    text += '\n';
+    for (std::size_t i = 0; i < table.poses.size(); ++i) {
+        append_fields(text, table.rows[i], replaced);
+        append(text, i);
+        text += '\n';
+    }
+    return text;
+}
 
 std::vector<Spawn> spawns_of(const PoseTable& table)
 {

@@ -1,4 +1,4 @@
-#include "command.h"
+#include "check_pairs.h"
 #include "messages.h"
 #include "numbers.h"
 #include "output.h"
@@ -6,6 +6,7 @@
 #include "spelling.h"
 #include "streams.h"
 
+#include <spawnfield/error.h>
 #include <spawnfield/verdict_report.h>
 
 #include <cmath>
@@ -19,6 +20,7 @@ struct CheckArgs : QueryArgs {
     bool require_valid = false;
     std::optional<double> repair, repair_step;  ///< m
     std::string repaired;
+    CheckPairsArgs pairs;
 };
 
 /// Returns how poses are repaired; nothing without --repair. Throws ArgumentError for values beyond their limits.
@@ -119,8 +121,23 @@ std::string unrepaired_words(const CheckArgs& args, const RepairList& repairs)
            (args.repaired.empty() ? "" : "; " + args.repaired + " has the old poses there");
 }
 
+/// Throws ArgumentError for options that do not go together with --pairs, and lets the robot down.
+Ending run_pairs_of_check(CheckArgs args, const CLI::App& command, Summary& summary)
+{
+    refuse(command, {"--poses", "--repair", "--repair-step", "--repaired"}, "has no effect with --pairs; leave it out");
+    if (args.format != "csv") throw ArgumentError("--format is " + args.format + ", but --pairs writes only csv");
+    if (args.given_stance == "level")
+        throw ArgumentError(
+            "--pairs is only for settled robots, because paths lead between settled poses; leave --stance level out");
+    args.settle = true;
+    return run_check_pairs(args, args.pairs, command, args.out, args.require_valid, summary);
+}
+
 Ending run_check(const CheckArgs& args, const CLI::App& command, Summary& summary)
 {
+    if (command.count("--pairs") > 0) return run_pairs_of_check(args, command, summary);
+    if (command.count("--poses") == 0) throw ArgumentError("--poses is required, or --pairs");
+    refuse_check_pairs_options(command);
     const std::optional<RepairOptions> repair = repair_options(args, command);
     const PoseTable table = open_poses(args, args.poses);
     notice_about_columns(args, table);
@@ -152,11 +169,10 @@ void add_check(CLI::App& app, ChosenCommand& chosen)
     auto args = std::make_shared<CheckArgs>();
     CLI::App& command = *app.add_subcommand("check", "Verdict and reason for each pose of a CSV file");
     add_map_and_robot(command, *args);
-    command
-        .add_option("--poses,-p", args->poses,
-                    "CSV file: x,y,z[,roll,pitch,yaw | ,roll_deg,pitch_deg,yaw_deg | ,qx,qy,qz,qw]; m, rad, degrees. "
-                    "Other columns are copied; verdict,ground,height_above,hit are replaced (- for standard input)")
-        ->required();
+    command.add_option(
+        "--poses,-p", args->poses,
+        "CSV file: x,y,z[,roll,pitch,yaw | ,roll_deg,pitch_deg,yaw_deg | ,qx,qy,qz,qw]; m, rad, degrees. "
+        "Other columns are copied; verdict,ground,height_above,hit are replaced (- for standard input)");
     command.add_option("--out,-o", args->out, "File to write (default: standard output)");
     command
         .add_option("--format", args->format,
@@ -179,6 +195,8 @@ void add_check(CLI::App& app, ChosenCommand& chosen)
         ->check(not_empty());
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Level);
+    start_group(command, help_group::reach);
+    add_check_pairs(command, args->pairs);
     add_robot_and_run(command, *args);
     add_allow_empty(command, *args);
     command.footer(
@@ -186,7 +204,9 @@ void add_check(CLI::App& app, ChosenCommand& chosen)
         "  printf 'x,y,z,yaw\\n0,0,0.1,0\\n7,7,0.1,0\\n' > /tmp/two_poses.csv\n"
         "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --poses /tmp/two_poses.csv\n"
         "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --poses /tmp/two_poses.csv --repair 1 --repaired "
-        "/tmp/repaired_poses.csv");
+        "/tmp/repaired_poses.csv\n"
+        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 --pairs 20 --reach-step 0.3 -o /tmp/pairs.csv\n"
+        "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --pairs /tmp/pairs.csv --reach-step 0.3");
     set_work(command, args, chosen, run_check);
 }
 

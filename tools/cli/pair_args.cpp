@@ -12,9 +12,6 @@
 namespace spawnfield::cli {
 namespace {
 
-const std::vector<std::string> pair_option_names{"--min-path", "--max-path",   "--detour",
-                                                 "--path",     "--fast-paths", "--scene-id"};
-
 bool is_pair_format(const std::string& format)
 {
     return std::find(pair_formats.begin(), pair_formats.end(), format) != pair_formats.end();
@@ -31,26 +28,45 @@ std::string text_of(const PairArgs& args, const std::string& format, const Sessi
 
 }  // namespace
 
+void add_pair_limits(CLI::App& command, PairArgs& args)
+{
+    command.add_option("--min-path", args.min_path, "m: shortest path of a pair (default 0)");
+    command.add_option("--max-path", args.max_path, "m: longest path of a pair (default: any)");
+    command.add_option("--detour", args.detour,
+                       "Smallest ratio of the path's length to the straight line, >= 1 (default 1)");
+    command.add_flag("--fast-paths", args.fast_paths,
+                     "Paths of pairs have 16 headings only: in the open they are up to 2.8 % longer, but are found in "
+                     "about a tenth of the time");
+}
+
+PairOptions pair_limits(const PairArgs& args)
+{
+    parse_finite("--min-path", args.min_path, "m");
+    parse_finite("--detour", args.detour, "");
+    if (args.min_path < 0) throw bad_value("--min-path", args.min_path, ">= 0 m");
+    if (!(args.max_path >= args.min_path) || args.max_path <= 0)
+        throw bad_value("--max-path", args.max_path, "> 0 m, and not below --min-path");
+    if (args.detour < 1) throw bad_value("--detour", args.detour, ">= 1");
+    return {
+        .min_path = args.min_path, .max_path = args.max_path, .min_detour = args.detour, .shorten = !args.fast_paths};
+}
+
 void add_pairs(CLI::App& command, PairArgs& args)
 {
     command.add_option("--pairs", args.count,
                        "Write this number of pairs of a start and a goal on one island, in place of spawns, with the "
                        "length of the path between them");
-    command.add_option("--min-path", args.min_path, "m: shortest path of a pair (default 0)");
-    command.add_option("--max-path", args.max_path, "m: longest path of a pair (default: any)");
-    command.add_option("--detour", args.detour,
-                       "Smallest ratio of the path's length to the straight line, >= 1 (default 1)");
+    add_pair_limits(command, args);
     command.add_option("--path", args.path, "CSV file to write: the poses on the path of each pair");
-    command.add_flag("--fast-paths", args.fast_paths,
-                     "Paths of pairs have 16 headings only: in the open they are up to 2.8 % longer, but are found in "
-                     "about a tenth of the time");
     command.add_option("--scene-id", args.scene_id,
                        "With --format habitat: name of the scene in the episodes (default: the map's name)");
 }
 
 void refuse_pair_options(const CLI::App& command, const std::string& format)
 {
-    refuse(command, pair_option_names, "is only for --pairs; give it, or leave this option out");
+    std::vector<std::string> names = pair_limit_names;
+    names.insert(names.end(), {"--path", "--scene-id"});
+    refuse(command, names, "is only for --pairs; give it, or leave this option out");
     if (is_pair_format(format)) throw ArgumentError("--format " + format + " is only for --pairs; give it, too");
 }
 
@@ -65,17 +81,9 @@ PairOptions pair_options(const PairArgs& args, const CLI::App& command, bool is_
     if (format != "habitat") refuse(command, {"--scene-id"}, "is only for --format habitat; leave it out");
     if (args.count < 1 || args.count > static_cast<long long>(max_spawns))
         throw bad_value("--pairs", double(args.count), "1 to " + std::to_string(max_spawns));
-    parse_finite("--min-path", args.min_path, "m");
-    parse_finite("--detour", args.detour, "");
-    if (args.min_path < 0) throw bad_value("--min-path", args.min_path, ">= 0 m");
-    if (!(args.max_path >= args.min_path) || args.max_path <= 0)
-        throw bad_value("--max-path", args.max_path, "> 0 m, and not below --min-path");
-    if (args.detour < 1) throw bad_value("--detour", args.detour, ">= 1");
-    return {.min_path = args.min_path,
-            .max_path = args.max_path,
-            .min_detour = args.detour,
-            .shorten = !args.fast_paths,
-            .keep_paths = !args.path.empty()};
+    PairOptions out = pair_limits(args);
+    out.keep_paths = !args.path.empty();
+    return out;
 }
 
 void write_pairs(const PairArgs& args, const std::string& format, const std::string& out, const Session& session,

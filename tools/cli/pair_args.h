@@ -20,6 +20,14 @@ struct PairArgs {
 /// Values of --format that only pairs have.
 inline const std::vector<std::string> pair_formats{"habitat", "nav2-goals"};
 
+/// Adds --min-path, --max-path, --detour and --fast-paths.
+void add_pair_limits(CLI::App& command, PairArgs& args);
+inline const std::vector<std::string> pair_limit_names{"--min-path", "--max-path", "--detour", "--fast-paths"};
+
+/// Returns the options that add_pair_limits() adds. Throws ArgumentError for values beyond their limits.
+PairOptions pair_limits(const PairArgs& args);
+
+/// Adds --pairs for `sample`, and all that belongs to it.
 void add_pairs(CLI::App& command, PairArgs& args);
 
 /// Throws ArgumentError if one of these options was given without --pairs. `format` is the value of --format.

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "command.h"
+#include "pair_args.h"
+#include "reach_args.h"
+
+namespace spawnfield::cli {
+
+/// Options of `check --pairs`.
+struct CheckPairsArgs {
+    std::string file;
+    PairArgs limits;
+    ReachArgs reach;
+};
+
+/// Adds --pairs and the options that belong to it.
+void add_check_pairs(CLI::App& command, CheckPairsArgs& args);
+
+/// Throws ArgumentError if one of these options was given without --pairs.
+void refuse_check_pairs_options(const CLI::App& command);
+
+/// Judges the pairs of a file, and writes them to the file `out`. The robot is let down, so `query` must be for settled
+/// robots.
+Ending run_check_pairs(const QueryArgs& query, const CheckPairsArgs& args, const CLI::App& command,
+                       const std::string& out, bool require_valid, Summary& summary);
+
+}  // namespace spawnfield::cli
