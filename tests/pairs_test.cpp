@@ -164,7 +164,7 @@ TEST_CASE("sample --pairs writes pairs and paths, all poses of which are valid f
 TEST_CASE("all formats of pairs have the poses and lengths of the CSV file")
 {
     const RoomsFolder rooms;
-    const std::string options = "--pairs 7 --min-path 1 --yaw random --reach-step 0.1 --seed 4 --island largest ";
+    const std::string options = "--pairs 7 --min-path 1 --yaw random --reach-step 0.2 --seed 4 --island largest ";
     const auto run = [&](const std::string& more) {
         const ProgramRun out = rooms.sample(options + more);
         REQUIRE(out.status == 0);
@@ -286,8 +286,8 @@ TEST_CASE("judge_pairs finds the paths that sample_pairs has found, and says why
 TEST_CASE("check --pairs accepts the pairs of sample, and adds its verdicts to those of a file")
 {
     const RoomsFolder rooms;
-    const std::string robot = "--robot box:0.3,0.3,0.2 --reach-step 0.1 ";
-    REQUIRE(rooms.sample("--pairs 12 --min-path 1 --yaw random --reach-step 0.1 -o pairs.csv").status == 0);
+    const std::string robot = "--robot box:0.3,0.3,0.2 --reach-step 0.2 ";
+    REQUIRE(rooms.sample("--pairs 12 --min-path 1 --yaw random --reach-step 0.2 -o pairs.csv").status == 0);
     const ProgramRun all = run_program(rooms, "check rooms " + robot + "--pairs pairs.csv --require-valid");
     CHECK(all.status == 0);
     CHECK_THAT(all.err, Contains("12 pairs: 12 valid"));
