@@ -12,9 +12,7 @@ namespace {
 /// Returns the two headings around a yaw, the nearer one first.
 std::array<int, 2> headings_around(double yaw)
 {
-    const auto ahead_of_it = [&](int heading) {
-        return std::remainder(lattice_yaw(heading) - yaw, 2 * std::numbers::pi);
-    };
+    const auto ahead_of_it = [&](int heading) { return turn_between(yaw, lattice_yaw(heading)); };
     int nearest = 0;
     for (int k = 1; k < lattice_headings; ++k)
         if (std::abs(ahead_of_it(k)) < std::abs(ahead_of_it(nearest))) nearest = k;

@@ -55,7 +55,7 @@ private:
     struct Entry {
         PathCost estimate, cost;
         Group group;
-        /// Of entries with the same estimate, those that are nearest to the goal come first.
+        /// Among entries with the same estimate, the one nearest to the goal comes first.
         bool operator>(const Entry& other) const
         {
             if (estimate != other.estimate) return estimate > other.estimate;

@@ -20,6 +20,8 @@ Vec2 direction_of(int heading)
     return Vec2(move.cols, move.rows) / move.length();
 }
 
+StatePose state_of(const SettledPose& pose) { return {.z = pose.position.z(), .roll = pose.roll, .pitch = pose.pitch}; }
+
 Course course_of(const StateAt& from, const StateAt& to, Way way)
 {
     const double yaw = lattice_yaw(from.heading);
@@ -197,21 +199,28 @@ bool WayJudge::can_climb(const Course& course, const StatePose& pose, const Stat
     return can_rise(poses_.front()) && can_rise(poses_.back());
 }
 
-std::optional<std::size_t> WayJudge::place_near(const SettledPose& pose, const Vec2& to,
-                                                std::span<const PlaceStates> places, int heading)
+/// The same from a settled pose to a column, with the slopes in their directions.
+std::optional<std::size_t> WayJudge::lowest_step(const SettledPose& pose, const Vec2& to,
+                                                 std::span<const PlaceStates> others, int heading)
 {
     const Vec2 from = pose.position.head<2>();
     const double ground = pose.ground->height, length = (to - from).norm();
     const Vec2 ahead = (to - from) / length;  // not used if the length is 0
-    const auto k = lowest_step(
-        length, ground, places, heading, [&] { return slope_at(from, ground, ahead); },
+    return lowest_step(
+        length, ground, others, heading, [&] { return slope_at(from, ground, ahead); },
         [&](const PlaceStates& other) { return slope_at(to, other.ground, -ahead); });
+}
+
+std::optional<std::size_t> WayJudge::place_near(const SettledPose& pose, const Vec2& to,
+                                                std::span<const PlaceStates> places, int heading)
+{
+    const auto k = lowest_step(pose, to, places, heading);
     if (!k) return std::nullopt;
+    const Vec2 from = pose.position.head<2>();
     const Course course{
         .begin = from, .end = to, .yaw = pose.yaw, .turn = turn_between(pose.yaw, lattice_yaw(heading))};
     set_start(from);
-    const StatePose begin{.z = pose.position.z(), .roll = pose.roll, .pitch = pose.pitch};
-    return can_follow(course, begin, settled(to, places[*k].ground, heading)) ? k : std::nullopt;
+    return can_follow(course, state_of(pose), settled(to, places[*k].ground, heading)) ? k : std::nullopt;
 }
 
 std::optional<double> WayJudge::ground_near(const Vec3& place, double most)
@@ -239,17 +248,11 @@ std::optional<SettledPose> WayJudge::go(const SettledPose& pose, const Vec2& to,
         places.push_back({.ground = height, .valid = 1});
         poses.push_back(std::move(there));
     }
-    const Vec2 ahead = (to - from) / length;  // not used if the length is 0
-    const auto k = lowest_step(
-        length, ground, places, 0, [&] { return slope_at(from, ground, ahead); },
-        [&](const PlaceStates& other) { return slope_at(to, other.ground, -ahead); });
+    const auto k = lowest_step(pose, to, places, 0);
     if (!k) return std::nullopt;
     set_start(from);
-    const auto state = [](const SettledPose& at) {
-        return StatePose{.z = at.position.z(), .roll = at.roll, .pitch = at.pitch};
-    };
     const Course course{.begin = from, .end = to, .yaw = pose.yaw, .turn = turn_between(pose.yaw, yaw)};
-    if (!can_follow(course, state(pose), state(poses[*k]))) return std::nullopt;
+    if (!can_follow(course, state_of(pose), state_of(poses[*k]))) return std::nullopt;
     return std::move(poses[*k]);
 }
 
@@ -262,8 +265,7 @@ StatePose WayJudge::exact_pose(const StateAt& state)
 
 StatePose WayJudge::settled(const Vec2& at, double ground, int heading)
 {
-    const SettledPose pose = stand_.judge({at.x(), at.y(), ground}, lattice_yaw(heading));
-    return {.z = pose.position.z(), .roll = pose.roll, .pitch = pose.pitch};
+    return state_of(stand_.judge({at.x(), at.y(), ground}, lattice_yaw(heading)));
 }
 
 bool WayJudge::is_free(const Course& course, const StatePose& pose, const StatePose& other, double lift)

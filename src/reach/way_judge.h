@@ -101,6 +101,8 @@ private:
     template <class Slope, class OtherSlope>
     std::optional<std::size_t> lowest_step(double length, double ground, std::span<const PlaceStates> others,
                                            int heading, const Slope& slope, const OtherSlope& other_slope) const;
+    std::optional<std::size_t> lowest_step(const SettledPose& pose, const Vec2& to, std::span<const PlaceStates> others,
+                                           int heading);
     double slope_at(const Vec2& at, const PlaceStates& place, int heading);
     double slope_at(const Vec2& at, double ground, const Vec2& ahead);
     bool is_proven(const ColumnView& column, const Vec3& place);
