@@ -35,7 +35,7 @@ std::vector<Touch> touches_of(const Convex& body, const Convex& ground)
     return out;
 }
 
-std::vector<Touch> touches_of(const Convex& body, const TouchTriangle& ground)
+std::vector<Touch> touches_of(const Convex& body, const TouchFace& ground)
 {
     PlacedBody placed{.body = body};
     place(placed, body, Mat3::Identity());
@@ -279,7 +279,7 @@ TEST_CASE("the touches of round bodies and polyhedra agree with a general method
         // On a steep surface, a small distance to the side is a large one in height.
         CHECK(std::abs(highest - general->height) <= 1e-9 * general->normal.norm());
         if (second != 4) continue;
-        const auto triangle = touch_triangle_of({ground.points[0], ground.points[1], ground.points[2]});
+        const auto triangle = touch_face_of({ground.points[0], ground.points[1], ground.points[2]});
         if (!triangle) continue;
         ++triangles;
         CHECK(std::abs(highest_of(touches_of(body, *triangle)) - general->height) <= 1e-9 * general->normal.norm());
@@ -297,9 +297,9 @@ TEST_CASE("the predicted height of a touch after a small turn is that of the tur
         const Pose pose{{between(0.3), between(0.3), 0}, rotation_of_rpy(between(0.5), between(0.5), between(3))};
         const Convex own = k % 2 ? convex_of(box_shape({0.8, 0.5, 0.3}, pose))
                                  : convex_of(cylinder_shape(0.4, 0.2, pose));
-        const auto triangle = touch_triangle_of({Vec3(between(1), between(1), 0),
-                                                 Vec3(between(1), between(1), between(0.4)),
-                                                 Vec3(between(1), between(1), 0)});
+        const auto triangle = touch_face_of({Vec3(between(1), between(1), 0),
+                                             Vec3(between(1), between(1), between(0.4)),
+                                             Vec3(between(1), between(1), 0)});
         if (!triangle) continue;
         const Mat3 rotation = rotation_of_rpy(between(1e-4), between(1e-4), 0);
         const std::vector<Touch> before = touches_of(own, *triangle),

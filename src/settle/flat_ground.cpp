@@ -9,8 +9,7 @@ Settler::FlatRest Settler::flat_rest(double yaw, Descent& descent) const
 {
     const double far = 10 * reach_;
     NearSolid plane;
-    plane.triangle = touch_triangle_of({Vec3(-far, -far, 0), Vec3(2 * far, -far, 0), Vec3(-far, 2 * far, 0)});
-    for (const Vec3& corner : plane.triangle->points) plane.bounds.extend(corner);
+    plane.set({Vec3(-far, -far, 0), Vec3(2 * far, -far, 0), Vec3(-far, 2 * far, 0)});
     FlatRest out{yaw, descent.run({&plane, 1}, yaw), {}};
     const Mat3 rotation = rotation_from_rpy(out.rest.roll, out.rest.pitch, yaw);
     for (const Convex& part : parts_) {
@@ -39,16 +38,14 @@ std::optional<Rest> Settler::rest_on_flat_ground(double yaw, const std::vector<N
 {
     constexpr double same_layer = 1e-9;  // m
     const NearSolid* ground = nullptr;
-    const auto is_level = [](const NearSolid& solid) {
-        return solid.triangle && solid.triangle->normal.head<2>().isZero(0);
-    };
+    const auto is_level = [](const NearSolid& solid) { return solid.face && solid.face->normal.head<2>().isZero(0); };
     for (const NearSolid& solid : solids)
-        if (is_level(solid) && std::abs(solid.triangle->height) <= same_layer) ground = &solid;
+        if (is_level(solid) && std::abs(solid.face->height) <= same_layer) ground = &solid;
     if (ground == nullptr) return std::nullopt;
     const FlatRest& flat = flat_rest(yaw, workspace);
     if (flat.rest.state != Rest::State::Standing) return std::nullopt;
-    const double z = ground->triangle->height;
-    const auto is_ground = [&](const NearSolid& solid) { return is_level(solid) && solid.triangle->height == z; };
+    const double z = ground->face->height;
+    const auto is_ground = [&](const NearSolid& solid) { return is_level(solid) && solid.face->height == z; };
     for (const NearSolid& solid : solids) {
         if (is_ground(solid) && solid.label == ground->label) continue;
         if (!is_ground(solid) && solid.bounds.max.z() <= z) continue;
@@ -61,7 +58,7 @@ std::optional<Rest> Settler::rest_on_flat_ground(double yaw, const std::vector<N
     out.drop_z += z;
     for (RestContact& contact : out.contacts) {
         const auto carries = [&](const NearSolid& solid) {
-            return is_ground(solid) && solid.triangle->is_over(contact.point);
+            return is_ground(solid) && solid.face->is_over(contact.point);
         };
         const auto below = std::find_if(solids.begin(), solids.end(), carries);
         if (below == solids.end()) return std::nullopt;

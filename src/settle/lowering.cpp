@@ -27,7 +27,7 @@ double Settler::Descent::highest_possible(const PlacedBody& part, const NearSoli
 {
     constexpr double rounding = 1e-9;  // m
     double out = solid.bounds.max.z() - part.bounds.min.z();
-    if (solid.triangle) out = std::min(out, height_bound(part, *solid.triangle));
+    if (solid.face) out = std::min(out, height_bound(part, *solid.face));
     return out + rounding;
 }
 
@@ -91,10 +91,10 @@ void Settler::Descent::find_pairs(double z)
 double Settler::Descent::touch(const PlacedBody& part, const NearSolid& solid, const WantedTouches& wanted)
 {
     touches_.clear();
-    if (solid.triangle)
-        add_touches(part, *solid.triangle, touches_, wanted);
+    if (solid.face)
+        add_touches(part, *solid.face, touches_, wanted);
     else
-        add_touches(part.body, *solid.body, touches_, wanted);
+        add_touches(part.body, solid.body(), touches_, wanted);
     return highest_of(touches_);
 }
 
@@ -180,7 +180,7 @@ double Settler::Descent::bottom_of(const Pair& pair, double highest, double enou
 
 std::optional<Interval> Settler::Descent::blocked_heights(const Convex& body, const NearSolid& solid)
 {
-    return spawnfield::blocked_heights(body, solid.triangle ? convex_of(solid.triangle->points) : *solid.body);
+    return spawnfield::blocked_heights(body, solid.body());
 }
 
 /// Lowers the robot onto the solids that are not higher than about z. It has no room if a solid reaches from below

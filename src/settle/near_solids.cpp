@@ -22,6 +22,12 @@ std::array<Vec3, 3> moved_by(const std::array<Vec3, 3>& corners, const Vec3& by)
     return {corners[0] + by, corners[1] + by, corners[2] + by};
 }
 
+/// Returns whether a primitive is a box whose sides are parallel to the axes of the scene.
+bool is_upright_box(const TilePrimitive& primitive)
+{
+    return primitive.kind == ShapeKind::Box && Mat3(primitive.rotation.data()) == Mat3::Identity();
+}
+
 /// The limits of a rectangle as floats. For boxes of floats, they are the same as those of the rectangle.
 struct Limits {
     float low_x, low_y, high_x, high_y;
@@ -52,7 +58,7 @@ struct SharedEdge {
     static std::uint8_t edge_without(int corner) { return std::uint8_t(1 << (corner + 1) % 3); }
 
     /// Returns a number that is negative if the triangles are on different sides of the edge, seen from above, m^4.
-    double overhang(const std::array<Vec3, 3>& first, const std::array<Vec3, 3>& second) const
+    double overhang(std::span<const Vec3> first, std::span<const Vec3> second) const
     {
         const Vec3 &shared = first[std::size_t(alone + 1) % 3], &own = first[std::size_t(alone)],
                    &other = second[std::size_t(other_alone)];
@@ -61,15 +67,54 @@ struct SharedEdge {
     }
 
     /// Returns whether nothing comes to lie on the edge that does not also lie on one of the triangles.
-    bool is_valley(const TouchTriangle& first, const TouchTriangle& second) const
+    bool is_valley(const TouchFace& first, const TouchFace& second) const
     {
         constexpr double flat = 1e-13;  // m
-        const double rise = first.normal.dot(second.points[std::size_t(other_alone)]) - first.height;
-        return overhang(first.points, second.points) < 0 && !(rise < -flat);
+        const double rise = first.normal.dot(second.corners[std::size_t(other_alone)]) - first.height;
+        return overhang(first.points(), second.points()) < 0 && !(rise < -flat);
     }
 };
 
 }  // namespace
+
+const Convex& NearSolid::body() const
+{
+    if (body_) return *body_;
+    if (box_ != nullptr) {
+        body_ = std::make_unique<const Convex>(moved(convex_of(box_->shape()), {-place_, Mat3::Identity()}));
+    } else {
+        const auto& [a, b, c, unused] = face->corners;
+        body_ = std::make_unique<const Convex>(convex_of({a, b, c}));
+    }
+    return *body_;
+}
+
+void NearSolid::set(const std::array<Vec3, 3>& triangle, const std::optional<TriangleShape>& known)
+{
+    const auto& [a, b, c] = triangle;
+    bounds = {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+    face = touch_face_of(triangle, known);
+    box_ = nullptr;
+    body_ = face ? nullptr : std::make_unique<const Convex>(convex_of(triangle));
+}
+
+void NearSolid::set(const TilePrimitive& upright_box, const Vec3& place)
+{
+    const Vec3 middle(upright_box.position.data()), half = 0.5 * Vec3(upright_box.size.data());
+    bounds = {middle - half - place, middle + half - place};  // to the bit those of body()
+    face = top_of(bounds);
+    body_.reset();
+    box_ = &upright_box;
+    place_ = place;
+}
+
+void NearSolid::set(Convex body)
+{
+    bounds = body.bounds();
+    face.reset();
+    box_ = nullptr;
+    body_ = std::make_unique<const Convex>(std::move(body));
+}
 
 const std::vector<NearSolid>& NearSolids::at(const Vec3& place)
 {
@@ -123,8 +168,10 @@ void NearSolids::gather(const Rect& area)
         if (tile.is_triangle(number)) {
             element.corners = tile.corners(number);
             element.shape = triangle_shape_of(element.corners);
+        } else if (const TilePrimitive& primitive = tile.primitive(number); is_upright_box(primitive)) {
+            element.box = &primitive;
         } else {
-            element.primitive = std::make_shared<const Convex>(convex_of(tile.primitive(number).shape()));
+            element.primitive = std::make_shared<const Convex>(convex_of(primitive.shape()));
         }
         boxes_.push_back(tile.box(number));
     }
@@ -239,7 +286,7 @@ void NearSolids::select(const Vec3& place, const Rect& area)
         if (numbers_[first] == none || numbers_[second] == none) continue;
         const SharedEdge edge(same);
         NearSolid& solid = solids_[numbers_[first]];
-        if (edge.is_valley(*solid.triangle, *solids_[numbers_[second]].triangle))
+        if (edge.is_valley(*solid.face, *solids_[numbers_[second]].face))
             solid.wanted.covered_edges |= SharedEdge::edge_without(edge.alone);
     }
     for (const std::uint32_t e : selected_) numbers_[e] = none;
@@ -253,18 +300,12 @@ void NearSolids::set(NearSolid& solid, const Element& element, const Vec3& place
     solid.part = element.part;
     solid.label = element.label;
     solid.wanted = element.wanted;
-    solid.triangle.reset();
-    solid.body.reset();
-    if (element.primitive) {
-        solid.body = std::make_unique<const Convex>(moved(*element.primitive, {-place, Mat3::Identity()}));
-        solid.bounds = solid.body->bounds();
-        return;
-    }
-    const std::array<Vec3, 3> corners = moved_by(element.corners, -place);
-    solid.bounds = {corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]),
-                    corners[0].cwiseMax(corners[1]).cwiseMax(corners[2])};
-    solid.triangle = touch_triangle_of(corners, element.shape);
-    if (!solid.triangle) solid.body = std::make_unique<const Convex>(convex_of(corners));
+    if (element.box != nullptr)
+        solid.set(*element.box, place);
+    else if (element.primitive)
+        solid.set(moved(*element.primitive, {-place, Mat3::Identity()}));
+    else
+        solid.set(moved_by(element.corners, -place), element.shape);
 }
 
 }  // namespace spawnfield

@@ -11,13 +11,28 @@
 namespace spawnfield {
 
 /// A part of the scene near a robot, relative to the place where the robot is let down.
-struct NearSolid {
-    std::optional<TouchTriangle> triangle;  ///< if it is a triangle that is not steep
-    std::unique_ptr<const Convex> body;     ///< otherwise
+class NearSolid {
+public:
+    /// Of a triangle that is not steep, and of a box whose sides are parallel to the axes: what touches from above.
+    std::optional<TouchFace> face;
     Bounds bounds;
     std::uint32_t part = 0;
     Label label = Label::Terrain;
     WantedTouches wanted;  ///< of robots that lie on the ground of all solids
+
+    /// Returns the whole solid. If it has a face, the solid is made when it is first needed: near a robot in a scan are
+    /// ten thousand voxels, and most are only touched from above.
+    const Convex& body() const;
+
+    // Each of these sets the face, the bounds and the body.
+    void set(const std::array<Vec3, 3>& triangle, const std::optional<TriangleShape>& known = {});
+    void set(const TilePrimitive& upright_box, const Vec3& place);  ///< keeps a pointer to the box
+    void set(Convex body);
+
+private:
+    mutable std::unique_ptr<const Convex> body_;  ///< null: not made yet
+    const TilePrimitive* box_ = nullptr;
+    Vec3 place_ = Vec3::Zero();  ///< of the robot, if it is a box
 };
 
 /// Finds the solids near one place after the other. Places that follow each other in a small area share work.
@@ -37,7 +52,8 @@ private:
     struct Element {
         std::array<Vec3, 3> corners;              ///< of a triangle
         std::optional<TriangleShape> shape;       ///< of a triangle that is not steep
-        std::shared_ptr<const Convex> primitive;  ///< otherwise
+        const TilePrimitive* box = nullptr;       ///< of a box whose sides are parallel to the axes
+        std::shared_ptr<const Convex> primitive;  ///< of other primitives
         std::uint32_t part;
         Label label;
         WantedTouches wanted;

@@ -41,7 +41,7 @@ struct Rest {
     double tilt() const;  ///< angle between the robot's z axis and the vertical, rad
 };
 
-struct NearSolid;
+class NearSolid;
 
 /// Lets robots down on the ground of a scene.
 class Settler {

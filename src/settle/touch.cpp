@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 namespace spawnfield {
 namespace {
@@ -74,7 +75,7 @@ double height_of_crossing(const Vec3& from, const Vec3& along, const Vec3& other
     return other.z() + t * across.z() - from.z() - s * along.z();
 }
 
-/// The upper side of a convex solid, onto which bodies are lowered. TouchTriangle has the same functions, see below.
+/// The upper side of a convex solid, onto which bodies are lowered. FaceTop has the same functions, see below.
 class Top {
 public:
     explicit Top(const Convex& solid) : points(solid.points), edges(solid.edges), solid_(solid)
@@ -111,39 +112,36 @@ private:
     double highest_ = -std::numeric_limits<double>::infinity();
 };
 
-/// The same for a triangle.
-class TriangleTop {
+/// The same for a face.
+class FaceTop {
 public:
-    explicit TriangleTop(const TouchTriangle& triangle)
-        : points(triangle.points), edges(TouchTriangle::edges), triangle_(triangle)
-    {
-    }
+    explicit FaceTop(const TouchFace& face) : points(face.points()), edges(face.edges()), face_(face) {}
 
-    const std::array<Vec3, 3>& points;
-    const std::array<std::array<int, 2>, 3>& edges;
+    const std::span<const Vec3> points;
+    const std::span<const std::array<int, 2>> edges;
 
     std::optional<End> end(double x, double y) const
     {
-        if (!triangle_.is_over({x, y, 0})) return std::nullopt;
-        return End{triangle_.z_at({x, y, 0}), triangle_.normal};
+        if (!face_.is_over({x, y, 0})) return std::nullopt;
+        return End{face_.z_at({x, y, 0}), face_.normal};
     }
 
-    /// Returns how far a point must be raised until it is on the triangle's plane, m.
-    double height_bound(const Vec3& point) const { return triangle_.z_at(point) - point.z(); }
+    /// Returns how far a point must be raised until it is on the face's plane, m.
+    double height_bound(const Vec3& point) const { return face_.z_at(point) - point.z(); }
 
-    const TouchTriangle& triangle() const { return triangle_; }
+    const TouchFace& face() const { return face_; }
 
     template <class Visit>
     void visit_faces(const Visit& visit) const
     {
-        visit(triangle_.normal.normalized(), [&](const Vec3& point) -> std::optional<double> {
+        visit(face_.normal.normalized(), [&](const Vec3& point) -> std::optional<double> {
             const auto top = end(point.x(), point.y());
             return top ? std::optional(top->z) : std::nullopt;
         });
     }
 
 private:
-    const TouchTriangle& triangle_;
+    const TouchFace& face_;
 };
 
 /// Adds the touches of corners of the ground below a polyhedron, without those below wanted.min_height.
@@ -204,73 +202,84 @@ void add_polyhedra(const Convex& body, const Top& ground, const WantedTouches& w
     }
 }
 
-/// Bits of a point beside the three sides of a triangle, seen from above: bit k is set if the point is outside of side
-/// k by more than rounding, bit 3 + k if it is inside of side k by more than rounding. They are as wide as a double, so
-/// that several are computed at a time.
+/// Bits of a point beside the sides of a face, seen from above: bit k is set if the point is outside of side k by more
+/// than rounding, bit 4 + k if it is inside of side k by more than rounding. They are as wide as a double, so that
+/// several are computed at a time.
 using SideBits = std::int64_t;
-constexpr SideBits all_sides = 7;
 
-SideBits outside_of(SideBits bits) { return bits & all_sides; }
-SideBits inside_of(SideBits bits) { return bits >> 3 & all_sides; }
+template <std::size_t Count>
+struct FaceSides {
+    static constexpr SideBits all = (1 << Count) - 1;
 
-/// Sets the bits of each corner of a body. Returns the bits that all corners have.
-SideBits compare_corners(const PlacedBody::Corners& corners, const TouchTriangle& triangle, SideBits* bits)
-{
-    const double *const x = corners.x.data(), *const y = corners.y.data();
-    const auto& [a, b, c] = triangle.sides;
-    const double ax = a.inward.x(), ay = a.inward.y(), a0 = a.offset, bx = b.inward.x(), by = b.inward.y(),
-                 b0 = b.offset, cx = c.inward.x(), cy = c.inward.y(), c0 = c.offset;
-    const std::size_t count = corners.x.size();
-    SideBits all = ~SideBits{0};
-#pragma omp simd reduction(& : all)
-    for (std::size_t j = 0; j < count; ++j) {
-        const double in_a = ax * x[j] + ay * y[j] - a0, in_b = bx * x[j] + by * y[j] - b0,
-                     in_c = cx * x[j] + cy * y[j] - c0;
-        bits[j] = (in_a < -rounding ? SideBits{1} : 0) | (in_b < -rounding ? SideBits{2} : 0) |
-                  (in_c < -rounding ? SideBits{4} : 0) | (in_a > rounding ? SideBits{8} : 0) |
-                  (in_b > rounding ? SideBits{16} : 0) | (in_c > rounding ? SideBits{32} : 0);
-        all &= bits[j];
+    static SideBits outside_of(SideBits bits) { return bits & all; }
+    static SideBits inside_of(SideBits bits) { return bits >> TouchFace::most & all; }
+
+    /// Sets the bits of each corner of a body. Returns the bits that all corners have.
+    static SideBits compare(const PlacedBody::Corners& corners, const TouchFace& face, SideBits* bits)
+    {
+        const double *const x = corners.x.data(), *const y = corners.y.data();
+        std::array<double, Count> a, b, c;
+        for (std::size_t k = 0; k < Count; ++k) {
+            a[k] = face.sides[k].inward.x();
+            b[k] = face.sides[k].inward.y();
+            c[k] = face.sides[k].offset;
+        }
+        const std::size_t count = corners.x.size();
+        SideBits common = ~SideBits{0};
+#pragma omp simd reduction(& : common)
+        for (std::size_t j = 0; j < count; ++j) {
+            SideBits here = 0;
+            for (std::size_t k = 0; k < Count; ++k) {
+                const double inside = a[k] * x[j] + b[k] * y[j] - c[k];
+                here |= (inside < -rounding ? SideBits{1} << k : 0) |
+                        (inside > rounding ? SideBits{1} << (TouchFace::most + k) : 0);
+            }
+            bits[j] = here;
+            common &= here;
+        }
+        return common;
     }
-    return all;
-}
+};
 
-/// The same for a polyhedron on a triangle. Seen from above, an edge can cross a side of the triangle only if its
-/// corners are on different sides of it.
-void add_polyhedra(const PlacedBody& placed, const TriangleTop& ground, const WantedTouches& wanted,
+/// The same for a polyhedron on a face with this number of corners. Seen from above, an edge can cross a side of the
+/// face only if its corners are on different sides of it.
+template <std::size_t Count>
+void add_polyhedra(const PlacedBody& placed, const FaceTop& ground, const WantedTouches& wanted,
                    std::vector<Touch>& out)
 {
+    using Sides = FaceSides<Count>;
     constexpr std::size_t few =
         32;  // no allocation for boxes and small hulls, because this is called millions of times
     std::array<SideBits, few> few_bits;
     const PlacedBody::Corners& corners = placed.lower_corners;
     std::vector<SideBits> many_bits(corners.x.size() > few ? corners.x.size() : 0);
     SideBits* const bits = many_bits.empty() ? few_bits.data() : many_bits.data();
-    const TouchTriangle& triangle = ground.triangle();
-    const SideBits all = compare_corners(corners, triangle, bits);
-    if (outside_of(all) != 0) return;
+    const TouchFace& face = ground.face();
+    const SideBits common = Sides::compare(corners, face, bits);
+    if (Sides::outside_of(common) != 0) return;
     const auto height_of = [&](std::size_t j) {
-        return triangle.height - triangle.normal.x() * corners.x[j] - triangle.normal.y() * corners.y[j] - corners.z[j];
+        return face.height - face.normal.x() * corners.x[j] - face.normal.y() * corners.y[j] - corners.z[j];
     };
     for (std::size_t j = 0; j < corners.indices.size(); ++j) {
-        if (outside_of(bits[j]) != 0) continue;
+        if (Sides::outside_of(bits[j]) != 0) continue;
         const double height = height_of(j);
         if (height >= wanted.min_height)
             out.push_back({height,
                            {corners.x[j], corners.y[j], corners.z[j]},
-                           triangle.normal,
+                           face.normal,
                            Touch::Kind::CornerOnFace,
                            corners.indices[j],
                            0});
     }
     add_corners_below(placed.body, placed.bounds, ground, wanted, out);
-    const SideBits wanted_sides = ~SideBits{wanted.covered_edges} & ~inside_of(all) & all_sides;
+    const SideBits wanted_sides = ~SideBits{wanted.covered_edges} & ~Sides::inside_of(common) & Sides::all;
     if (wanted_sides == 0) return;
     for (const PlacedBody::Edge& edge : placed.lower_edges) {
-        const SideBits both = bits[edge.from] & bits[edge.to], crossed = ~inside_of(both) & wanted_sides;
-        if (outside_of(both) != 0 || crossed == 0 ||
+        const SideBits both = bits[edge.from] & bits[edge.to], crossed = ~Sides::inside_of(both) & wanted_sides;
+        if (Sides::outside_of(both) != 0 || crossed == 0 ||
             std::max(height_of(edge.from), height_of(edge.to)) < wanted.min_height)
             continue;
-        for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t k = 0; k < Count; ++k)
             if (crossed >> k & 1) add_crossing(placed.body, edge.index, ground, k, out);
     }
 }
@@ -519,11 +528,13 @@ void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& o
     for (const Convex& end : ends_of(ground)) add(body, end);
 }
 
-void add_touches(const PlacedBody& placed, const TouchTriangle& ground, std::vector<Touch>& out,
+void add_touches(const PlacedBody& placed, const TouchFace& ground, std::vector<Touch>& out,
                  const WantedTouches& wanted)
 {
-    if (placed.body.is_polyhedron()) return add_polyhedra(placed, TriangleTop(ground), wanted, out);
-    add_round(placed.body, TriangleTop(ground), wanted, out);
+    const FaceTop top(ground);
+    if (!placed.body.is_polyhedron()) return add_round(placed.body, top, wanted, out);
+    if (ground.count == 3) return add_polyhedra<3>(placed, top, wanted, out);
+    add_polyhedra<4>(placed, top, wanted, out);
 }
 
 namespace {
@@ -587,13 +598,12 @@ void place(PlacedBody& out, const Convex& body, const Mat3& rotation)
     }
 }
 
-double height_bound(const PlacedBody& placed, const TouchTriangle& triangle)
+double height_bound(const PlacedBody& placed, const TouchFace& face)
 {
-    if (!placed.body.is_polyhedron())
-        return triangle.height - triangle.normal.dot(placed.body.support(-triangle.normal));
+    if (!placed.body.is_polyhedron()) return face.height - face.normal.dot(placed.body.support(-face.normal));
     const PlacedBody::Corners& corners = placed.lower_corners;
     const double *const x = corners.x.data(), *const y = corners.y.data(), *const z = corners.z.data();
-    const double height = triangle.height, slope_x = triangle.normal.x(), slope_y = triangle.normal.y();
+    const double height = face.height, slope_x = face.normal.x(), slope_y = face.normal.y();
     double out = -std::numeric_limits<double>::infinity();
 #pragma omp simd reduction(max : out)
     for (std::size_t j = 0; j < corners.x.size(); ++j)
@@ -602,7 +612,7 @@ double height_bound(const PlacedBody& placed, const TouchTriangle& triangle)
 }
 
 std::optional<double> height_after(const Touch& touch, const Convex& body, const Mat3& rotation,
-                                   const TouchTriangle& ground)
+                                   const TouchFace& ground)
 {
     const auto raised = [&](const Vec3& point) { return ground.z_at(point) - point.z(); };
     double out = std::numeric_limits<double>::quiet_NaN();
@@ -616,15 +626,15 @@ std::optional<double> height_after(const Touch& touch, const Convex& body, const
     case Touch::Kind::CornerUnderFace: {
         const Convex::Plane& plane = body.planes[touch.body];
         const Vec3 normal = rotation * plane.normal;
-        out = (normal.dot(ground.points[touch.ground]) - plane.offset) / normal.z();
+        out = (normal.dot(ground.corners[touch.ground]) - plane.offset) / normal.z();
         break;
     }
     case Touch::Kind::EdgeOnEdge: {
         const auto& [a, b] = body.edges[touch.body];
-        const auto& [c, d] = TouchTriangle::edges[touch.ground];
-        const Vec3 &from = body.points[std::size_t(a)], &other = ground.points[std::size_t(c)];
+        const auto& [c, d] = ground.edges()[touch.ground];
+        const Vec3 &from = body.points[std::size_t(a)], &other = ground.corners[std::size_t(c)];
         out = height_of_crossing(rotation * from, rotation * (body.points[std::size_t(b)] - from), other,
-                                 ground.points[std::size_t(d)] - other);
+                                 ground.corners[std::size_t(d)] - other);
         break;
     }
     case Touch::Kind::Other: break;
@@ -640,11 +650,16 @@ std::array<Vec3, 3> sides_of(const std::array<Vec3, 3>& triangle)
     return {b - a, c - b, a - c};
 }
 
-TouchTriangle placed(const TriangleShape& shape, const std::array<Vec3, 3>& triangle)
+TouchFace placed(const TriangleShape& shape, const std::array<Vec3, 3>& triangle)
 {
     const Vec3& normal = shape.unit_normal;
-    TouchTriangle out{triangle, normal / normal.z(), normal.dot(triangle[0]) / normal.z(), {}};
-    for (std::size_t k = 0; k < 3; ++k) out.sides[k] = {shape.inwards[k], shape.inwards[k].dot(triangle[k].head<2>())};
+    TouchFace out;
+    out.count = triangle.size();
+    std::copy(triangle.begin(), triangle.end(), out.corners.begin());
+    out.normal = normal / normal.z();
+    out.height = normal.dot(triangle[0]) / normal.z();
+    for (std::size_t k = 0; k < out.count; ++k)
+        out.sides[k] = {shape.inwards[k], shape.inwards[k].dot(triangle[k].head<2>())};
     return out;
 }
 
@@ -656,7 +671,7 @@ std::optional<TriangleShape> triangle_shape_of(const std::array<Vec3, 3>& triang
     out.sides = sides_of(triangle);
     out.unit_normal = out.sides[0].cross(triangle[2] - triangle[0]).normalized();
     const double up = out.unit_normal.z();
-    if (!(std::abs(up) * TouchTriangle::steepest >= 1)) return std::nullopt;
+    if (!(std::abs(up) * TouchFace::steepest >= 1)) return std::nullopt;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec2 along = out.sides[k].head<2>();
         out.inwards[k] = Vec2(-along.y(), along.x()) / (up < 0 ? -along.norm() : along.norm());
@@ -664,21 +679,38 @@ std::optional<TriangleShape> triangle_shape_of(const std::array<Vec3, 3>& triang
     return out;
 }
 
-std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle)
+std::optional<TouchFace> touch_face_of(const std::array<Vec3, 3>& triangle)
 {
     const std::optional<TriangleShape> shape = triangle_shape_of(triangle);
     return shape ? std::optional(placed(*shape, triangle)) : std::nullopt;
 }
 
-std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle,
-                                               const std::optional<TriangleShape>& known)
+std::optional<TouchFace> touch_face_of(const std::array<Vec3, 3>& triangle, const std::optional<TriangleShape>& known)
 {
-    return known && known->sides == sides_of(triangle) ? placed(*known, triangle) : touch_triangle_of(triangle);
+    return known && known->sides == sides_of(triangle) ? placed(*known, triangle) : touch_face_of(triangle);
 }
 
-bool TouchTriangle::is_over(const Vec3& p) const
+TouchFace top_of(const Bounds& box)
 {
-    return std::all_of(sides.begin(), sides.end(), [&](const Side& side) {
+    const double x0 = box.min.x(), y0 = box.min.y(), x1 = box.max.x(), y1 = box.max.y(), z = box.max.z();
+    return {4,
+            {Vec3(x0, y0, z), Vec3(x1, y0, z), Vec3(x1, y1, z), Vec3(x0, y1, z)},
+            Vec3::UnitZ(),
+            z,
+            {{{{0, 1}, y0}, {{-1, 0}, -x1}, {{0, -1}, -y1}, {{1, 0}, x0}}}};
+}
+
+std::span<const std::array<int, 2>> TouchFace::edges() const
+{
+    static constexpr std::array<std::array<int, 2>, 3> of_triangle{{{0, 1}, {1, 2}, {2, 0}}};
+    static constexpr std::array<std::array<int, 2>, 4> of_rectangle{{{0, 1}, {1, 2}, {2, 3}, {3, 0}}};
+    if (count == 3) return of_triangle;
+    return of_rectangle;
+}
+
+bool TouchFace::is_over(const Vec3& p) const
+{
+    return std::all_of(sides.begin(), sides.begin() + std::ptrdiff_t(count), [&](const Side& side) {
         return side.inward.x() * p.x() + side.inward.y() * p.y() >= side.offset - rounding;
     });
 }

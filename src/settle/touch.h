@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace spawnfield {
@@ -38,39 +39,46 @@ struct WantedTouches {
     bool wants_point(std::size_t k) const { return k >= 8 || (covered_points >> k & 1) == 0; }
 };
 
-/// A triangle of the scene that is not steep, prepared for many touches from above.
-struct TouchTriangle {
+/// A face of the scene that is not steep, prepared for many touches from above: a triangle, or the top of an upright
+/// box. A robot that meets the box from above touches nothing else of it.
+struct TouchFace {
     static constexpr double steepest = 20;  ///< largest slope
-    static constexpr std::array<std::array<int, 2>, 3> edges{{{0, 1}, {1, 2}, {2, 0}}};
+    static constexpr std::size_t most = 4;  ///< corners
 
-    std::array<Vec3, 3> points;
-    Vec3 normal;    ///< scaled so that z is 1; the plane is where normal . p = height
-    double height;  ///< of the plane at x = y = 0, m
+    std::size_t count;               ///< 3 or 4 corners, in order
+    std::array<Vec3, most> corners;  ///< the first `count` of them
+    Vec3 normal;                     ///< scaled so that z is 1; the plane is where normal . p = height
+    double height;                   ///< of the plane at x = y = 0, m
     struct Side {
         Vec2 inward;    ///< of length 1
         double offset;  ///< m; inside, inward . p >= offset
     };
-    std::array<Side, 3> sides;  ///< of the edges, seen from above
+    std::array<Side, most> sides;  ///< of the edges, seen from above
 
+    std::span<const Vec3> points() const { return {corners.data(), count}; }
+    /// Edge k is from corner k to the next one.
+    std::span<const std::array<int, 2>> edges() const;
     double z_at(const Vec3& p) const { return height - normal.x() * p.x() - normal.y() * p.y(); }
-    bool is_over(const Vec3& p) const;  ///< whether p is above or below the triangle or its edges (to 1e-12 m)
+    bool is_over(const Vec3& p) const;  ///< whether p is above or below the face or its edges (to 1e-12 m)
 };
 
-/// What of a TouchTriangle does not depend on where it is.
+/// What of the TouchFace of a triangle does not depend on where it is.
 struct TriangleShape {
     std::array<Vec3, 3> sides;    ///< side k is from corner k to the next corner
     Vec3 unit_normal;             ///< of length 1
-    std::array<Vec2, 3> inwards;  ///< TouchTriangle::Side::inward
+    std::array<Vec2, 3> inwards;  ///< TouchFace::Side::inward
 };
 
-/// Returns nothing if the triangle is steeper than TouchTriangle::steepest or has no area.
-std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle);
+/// Returns nothing if the triangle is steeper than TouchFace::steepest or has no area.
+std::optional<TouchFace> touch_face_of(const std::array<Vec3, 3>& triangle);
 std::optional<TriangleShape> triangle_shape_of(const std::array<Vec3, 3>& triangle);
 
 /// The same for a triangle whose shape is known from another place. If its sides differ from those there by rounding,
 /// the shape is computed anew: so the result is always the same as without `known`.
-std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle,
-                                               const std::optional<TriangleShape>& known);
+std::optional<TouchFace> touch_face_of(const std::array<Vec3, 3>& triangle, const std::optional<TriangleShape>& known);
+
+/// Returns the top of a box whose sides are parallel to the axes.
+TouchFace top_of(const Bounds& box);
 
 /// A convex body at its current attitude, prepared for many touches from above.
 struct PlacedBody {
@@ -96,8 +104,8 @@ struct PlacedBody {
 /// result of an earlier call for it.
 void place(PlacedBody& out, const Convex& body, const Mat3& rotation);
 
-/// Returns how far the body must be raised at most until it is not below the triangle's plane, m.
-double height_bound(const PlacedBody& placed, const TouchTriangle& triangle);
+/// Returns how far the body must be raised at most until it is not below the face's plane, m.
+double height_bound(const PlacedBody& placed, const TouchFace& face);
 
 /// Adds the touches of a body that moves only along z and meets the ground, a convex solid, from above. At the height
 /// of the highest touch the body rests on the ground: on no vertical line is the ground's upper end above the body's
@@ -105,14 +113,14 @@ double height_bound(const PlacedBody& placed, const TouchTriangle& triangle);
 /// round bodies, adds only the highest touch of the bodies and of their ends. Surfaces steeper than 1e5 have no
 /// touches. Adds nothing if body and ground do not overlap seen from above.
 void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& out, const WantedTouches& wanted = {});
-void add_touches(const PlacedBody& placed, const TouchTriangle& ground, std::vector<Touch>& out,
+void add_touches(const PlacedBody& placed, const TouchFace& ground, std::vector<Touch>& out,
                  const WantedTouches& wanted = {});
 
-/// Returns the height of a touch of the body on a triangle after the body has been rotated from its own frame, if the
+/// Returns the height of a touch of the body on a face after the body has been rotated from its own frame, if the
 /// same two features still touch: it is not tested whether they still meet. Returns nothing for Kind::Other, or if they
 /// are parallel.
 std::optional<double> height_after(const Touch& touch, const Convex& body, const Mat3& rotation,
-                                   const TouchTriangle& ground);
+                                   const TouchFace& ground);
 
 /// Returns the highest of these touches for any two bodies, by a general method that takes longer.
 std::optional<Touch> highest_touch(const Convex& body, const Convex& ground);

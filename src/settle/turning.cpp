@@ -161,8 +161,7 @@ std::optional<double> Settler::Descent::touch_height(const RestTouch& old, const
 {
     const Convex& body = settler_.parts_[old.part];
     const NearSolid& solid = solids_[old.solid];
-    if (solid.triangle && old.touch.kind != Touch::Kind::Other)
-        return height_after(old.touch, body, rotated, *solid.triangle);
+    if (solid.face && old.touch.kind != Touch::Kind::Other) return height_after(old.touch, body, rotated, *solid.face);
     place(turned_[old.part], body, rotated);
     placed_.setConstant(std::numeric_limits<double>::quiet_NaN());
     touch(turned_[old.part], solid, {.min_height = old.touch.height - most_seen});
