@@ -15,7 +15,10 @@ constexpr double rest_tolerance = 1e-7;  // m: the same as contact_tolerance, if
 constexpr double line_tolerance = 1e-6;
 constexpr double least_limit = 0.01, largest_turn = 0.3;  // rad: limits of one step
 constexpr double exact_turn = 1e-3;  // rad: after a turn of this size, the touches are where they were expected
-constexpr int max_turns = 300;
+/// After turns that are shorter than this, a wall that stops the robot is where it was met. In shorter steps, no rest
+/// would be found before it, only the place of the wall more exactly.
+constexpr double turn_to_wall = 1e-7;  // rad
+constexpr int max_turns = 120;         // nearly all robots need less than 20; more are a cycle around a balance
 /// Where the mass is exactly above an edge between two ways to rest, the robot turns as if its centre of mass were this
 /// much farther back and to the right, m.
 const Vec3 preference(-1e-7, -0.5e-7, 0);
@@ -29,7 +32,7 @@ Settler::Descent::Descent(const Settler& settler) : settler_(settler)
 
 Rest Settler::Descent::run(std::span<const NearSolid> solids, double yaw)
 {
-    solids_ = solids;
+    set_solids(solids);
     face(yaw);
     mass_ = settler_.mass_center_ + preference;
     drift_ = Vec2::Zero();
@@ -132,6 +135,7 @@ Rest::State Settler::Descent::descend(double straight)
         if (!next_.has_room || sinks < 0.25 * expected - tie) {
             wall = next_.has_room ? std::nullopt : next_.wall;
             limit_ = turn.lpNorm<Eigen::Infinity>() / 4;
+            if (wall && turn.norm() < turn_to_wall) break;
             continue;
         }
         wall.reset();

@@ -6,7 +6,10 @@
 #include "settle/near_solids.h"
 #include "settle/settle.h"
 
+#include <array>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 namespace spawnfield {
 
@@ -120,7 +123,9 @@ private:
     static double lowest_possible(const PlacedBody& part, const NearSolid& solid);
     const Level& level_robot(double yaw);
     void turn_parts(const Mat3& rotation);
-    void find_pairs(double z);
+    void set_solids(std::span<const NearSolid> solids);
+    std::size_t find_near(const Bounds& robot, double low_z, double high_z);
+    void find_pairs(double low_z, double high_z);
     double touch(const PlacedBody& part, const NearSolid& solid, const WantedTouches& wanted = {});
     void level(Lowered& out);
     std::optional<Between> solid_between_parts(double z);
@@ -157,6 +162,8 @@ private:
 
     const Settler& settler_;
     std::span<const NearSolid> solids_;
+    std::array<std::vector<double>, 3> lows_, highs_;  ///< of the bounds of solids_ along each axis
+    std::vector<std::uint32_t> near_;                  ///< see find_near()
     double yaw_ = std::numeric_limits<double>::quiet_NaN();
     CosSin yaw_parts_{0};
     const double least_cosine_ = std::cos(settler_.options_.max_tilt);  ///< of the tilt

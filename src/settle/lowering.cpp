@@ -72,18 +72,61 @@ void Settler::Descent::turn_parts(const Mat3& rotation)
     parts_ = turned_;
 }
 
-/// Sets pairs_ to the parts of the robot and the solids that overlap seen from above, except solids that are above
-/// the robot even if its origin is at height z. The pair that may be the highest is the first.
-void Settler::Descent::find_pairs(double z)
+/// Prepares the solids between which the robot is let down for find_pairs().
+void Settler::Descent::set_solids(std::span<const NearSolid> solids)
 {
-    pairs_.clear();
-    std::size_t first = 0;
-    for (std::uint32_t p = 0; p < parts_.size(); ++p)
-        for (std::uint32_t s = 0; s < solids_.size(); ++s) {
-            if (!parts_[p].bounds.meets(solids_[s].bounds, 2) || lowest_possible(parts_[p], solids_[s]) > z) continue;
-            pairs_.push_back({highest_possible(parts_[p], solids_[s]), p, s});
-            if (pairs_.back().possible > pairs_[first].possible) first = pairs_.size() - 1;
+    solids_ = solids;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        lows_[axis].resize(solids.size());
+        highs_[axis].resize(solids.size());
+        for (std::size_t s = 0; s < solids.size(); ++s) {
+            lows_[axis][s] = solids[s].bounds.min[int(axis)];
+            highs_[axis][s] = solids[s].bounds.max[int(axis)];
         }
+    }
+    near_.resize(solids.size());
+}
+
+/// Sets near_ to the solids that overlap the robot's bounds seen from above and may touch it while its origin is
+/// between two heights. Returns their number.
+std::size_t Settler::Descent::find_near(const Bounds& robot, double low_z, double high_z)
+{
+    const double x0 = robot.min.x(), y0 = robot.min.y(), x1 = robot.max.x(), y1 = robot.max.y(),
+                 bottom = robot.min.z() + low_z, top = robot.max.z() + high_z;
+    std::size_t count = 0;
+    for (std::uint32_t s = 0; s < solids_.size(); ++s) {
+        near_[count] = s;
+        count += std::size_t((lows_[0][s] <= x1) & (highs_[0][s] >= x0) & (lows_[1][s] <= y1) & (highs_[1][s] >= y0) &
+                             (highs_[2][s] >= bottom) & (lows_[2][s] <= top));
+    }
+    return count;
+}
+
+/// Sets pairs_ to the parts of the robot and the solids that overlap seen from above, except solids that are above
+/// the robot even if its origin is at height `high_z`, or below it at `low_z`. The pair that may be the highest is the
+/// first.
+void Settler::Descent::find_pairs(double low_z, double high_z)
+{
+    constexpr double margin = 1e-6;  // m: more than the rounding of highest_possible()
+    pairs_.clear();
+    Bounds robot;
+    for (const PlacedBody& part : parts_) {
+        robot.extend(part.bounds.min);
+        robot.extend(part.bounds.max);
+    }
+    const std::span near(near_.data(), find_near(robot, low_z - margin, high_z + margin));
+    std::size_t first = 0;
+    for (std::uint32_t p = 0; p < parts_.size(); ++p) {
+        const Bounds& part = parts_[p].bounds;
+        for (const std::uint32_t s : near) {
+            const NearSolid& solid = solids_[s];
+            if (!part.meets(solid.bounds, 2) || lowest_possible(parts_[p], solid) > high_z) continue;
+            const double possible = highest_possible(parts_[p], solid);
+            if (possible < low_z) continue;
+            pairs_.push_back({possible, p, s});
+            if (possible > pairs_[first].possible) first = pairs_.size() - 1;
+        }
+    }
     if (!pairs_.empty()) std::swap(pairs_[0], pairs_[first]);
 }
 
@@ -105,7 +148,7 @@ void Settler::Descent::level(Lowered& out)
     out.clear();
     out.rotation = level_->rotation;
     double z = -level_->bottom;
-    find_pairs(settler_.options_.max_height);
+    find_pairs(z, settler_.options_.max_height);
     const auto raise = [&](double height, std::size_t solid) {
         z = height;
         out.wall = solids_[solid].part;
@@ -199,7 +242,7 @@ void Settler::Descent::lower(const Vec2& angles, double z, double rise, Lowered&
     const Attitude attitude(rotation(angles), yaw_parts_);
     out.rotation = attitude.rotation;
     turn_parts(attitude.rotation);
-    find_pairs(out.seen);
+    find_pairs(z - rise - below, out.seen);
     for (const Pair& pair : pairs_) {
         const double least = std::max(out.z, z - rise) - below;
         if (pair.possible < least) continue;
@@ -230,7 +273,7 @@ void Settler::Descent::lower(const Vec2& angles, double z, double rise, Lowered&
 double Settler::Descent::ceiling_above(const Lowered& at)
 {
     double out = at.ceiling;
-    find_pairs(at.z + settler_.options_.headroom);
+    find_pairs(at.z, at.z + settler_.options_.headroom);
     for (const Pair& pair : pairs_) {
         const PlacedBody& part = parts_[pair.part];
         const NearSolid& solid = solids_[pair.solid];

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <utility>
 
 namespace spawnfield {
 namespace {
@@ -386,6 +387,20 @@ void add_tube(const std::array<Vec3, 2>& ends, double radius, const Ground& grou
     }
 }
 
+/// Returns the cosines and sines of the directions of rim_corners corners.
+const std::array<std::pair<double, double>, rim_corners>& rim_directions()
+{
+    static const auto out = [] {
+        std::array<std::pair<double, double>, rim_corners> all;
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            const double angle = 2 * std::numbers::pi * double(k) / rim_corners;
+            all[k] = {std::cos(angle), std::sin(angle)};
+        }
+        return all;
+    }();
+    return out;
+}
+
 /// Adds the touches of the rim of the disc around a point of the body.
 template <class Ground>
 void add_rim(const Convex& body, std::size_t index, const Ground& ground, const WantedTouches& wanted,
@@ -401,10 +416,10 @@ void add_rim(const Convex& body, std::size_t index, const Ground& ground, const 
         const double length = across.norm();
         if (length >= 1e-14) add(centre - (radius / length) * across, Touch::Kind::RimOnFace);
         // A disc that comes to lie on a face touches it at its whole rim, not only at its lowest point.
-        if (length > flat_disc) return;
-        for (int k = 0; k < rim_corners; ++k) {
-            const double angle = 2 * std::numbers::pi * k / rim_corners;
-            const Vec3 point = centre + radius * (std::cos(angle) * u + std::sin(angle) * v);
+        const double highest = ground.height_bound(centre) + radius * length / normal.z();
+        if (length > flat_disc || highest + rounding < wanted.min_height) return;
+        for (const auto& [cosine, sine] : rim_directions()) {
+            const Vec3 point = centre + radius * (cosine * u + sine * v);
             if (ground.height_bound(point) >= wanted.min_height) add(point, Touch::Kind::Other);
         }
     });

@@ -13,6 +13,13 @@ namespace {
 constexpr double whole_turn = 1e-6;  // a part of a turn that differs from all of it by this share is all of it
 constexpr double same_drift = 1e-9;  // m: much less than `preference`, which would have no effect otherwise
 
+// Where a rim rolls from a face onto the edge of the face, both touches rise equally: the difference of their heights
+// has a double root. Each step of Newton's method goes only half of the way to it, where a quarter of the difference is
+// left.
+bool is_half(double share, double of) { return std::abs(share / of - 0.5) < 0.1; }
+
+bool is_quarter(double difference, double of) { return std::abs(difference / of - 0.25) < 0.1; }
+
 }  // namespace
 
 /// Returns the turn with which the mass sinks most, at most `limit_` in roll and pitch. The mass sinks as it does
@@ -136,7 +143,7 @@ std::optional<Vec2> Settler::Descent::leveled(const Vec2& turn, std::span<const 
 }
 
 /// Returns the share of a turn at which two touches are equally high, near the share that their derivatives
-/// predict. Returns the predicted one if it finds no other.
+/// predict. Returns the predicted one if it finds no other, and twice as much at a double root.
 double Settler::Descent::exact_kink(const Vec2& turn, double predicted, const RestTouch& carried, const RestTouch& next)
 {
     double share = predicted, change = (next.rise - carried.rise).dot(turn), last = 0, last_difference = 0;
@@ -145,6 +152,8 @@ double Settler::Descent::exact_kink(const Vec2& turn, double predicted, const Re
         const auto height = touch_height(next, rotated), carried_height = touch_height(carried, rotated);
         if (!height || !carried_height) return predicted;
         const double difference = *height - *carried_height;
+        if (step == 0 && is_quarter(difference, next.touch.height - carried.touch.height))
+            return std::min(1.0, 2 * predicted);
         if (step > 0 && share != last) change = (difference - last_difference) / (share - last);
         const double better = share - difference / change;
         if (!(std::abs(better - predicted) <= predicted / 4)) return predicted;
@@ -177,12 +186,19 @@ std::optional<double> Settler::Descent::touch_height(const RestTouch& old, const
     return out;
 }
 
-/// Turns the robot a little, forth or back along its last turn, until two touches are equally high there.
+/// Turns the robot a little, forth or back along its last turn, until two touches are equally high there. It does not
+/// go back by more than half of that turn: otherwise it would make the same turn again.
 void Settler::Descent::land(const Vec2& turn)
 {
+    double last = 0, all = 0;  // shares of the turn
     for (int step = 0; step < 8; ++step) {
-        const double share = nearest_kink(turn);
+        double share = nearest_kink(turn);
         if (std::abs(share) * turn.norm() < smallest_turn) return;
+        const bool is_double = last != 0 && is_half(share, last);
+        last = is_double ? 0 : share;
+        if (is_double) share *= 2;
+        all += share;
+        if (std::abs(all) > 0.5) return;
         turn_by(share * turn);
         if (!next_.has_room || next_.touches.empty()) return;
         std::swap(at_, next_);
