@@ -189,7 +189,7 @@ SimulatorOutput::SimulatorOutput(const CommonArgs& common, const CLI::App& comma
 void SimulatorOutput::notice_about_model(const Robot& robot) const
 {
     constexpr double noticeable = 0.005;  // m
-    const std::string uri = is("sdf") ? sdf_.uri : is_ros() ? launch_.file : "";
+    const std::string uri = model();
     const fs::path file = model_on_disk(uri, target_.reading.model_paths);
     std::error_code ignored;
     if (file.empty() || robot.parts.empty() || fs::equivalent(file, target_.robot, ignored)) return;
