@@ -190,6 +190,15 @@ TEST_CASE("sample --fill places robots until none has room")
     refuses("--fill --format thesis -o t", "--format thesis has no fleets");
 }
 
+TEST_CASE("Ctrl-C ends a fill, and nothing is written")
+{
+    const Arena arena;
+    const ProgramRun run = interrupt_program(
+        arena, "sample map --robot box:0.3,0.3,0.2 --yaw random --fill --fill-step 0.05 -o filled.csv");
+    CHECK(run.status == 130);
+    CHECK_FALSE(std::filesystem::exists(arena / "filled.csv"));
+}
+
 TEST_CASE("all robots of a fleet with one_island stand on one side of a wall")
 {
     const FleetArena arena;
@@ -291,6 +300,9 @@ TEST_CASE("faults in fleet files are named with file, line, key and what is allo
     refuses("one_island: maybe\nrobots:\n- " + kind + "}\n", "one_island is \"maybe\", needs one of true, false");
     refuses("formation: {shape: line, spacing: 1}\nrobots:\n- {name: a, robot: 'box:1,1,1', count: fill}\n",
             "no number of robots (count is fill)");
+    refuses("one_island: true\nrobots:\n- " + kind + "}\n", "one_island is true, but it is only for settled",
+            "--stance level");
+    refuses_kind(", island: largest", "island is only for settled robots", "--stance level");
     arena.write("fleet.yaml", head + "robots:\n- {name: a, robot: none.yaml, count: 1}\n");
     CHECK_THAT(arena.fleet().err, Contains("none.yaml: does not exist"));
     CHECK_THAT(arena.fleet("--name a").err, Contains("--name is for one kind of robot"));

@@ -62,8 +62,11 @@ public:
         : kinds_(kinds), options_(options), placed_(kinds, options), found_(kinds.size())
     {
         out_.kinds.resize(kinds.size());
-        for (const FleetKind& kind : kinds) poses_.emplace_back(kind, options);
+        // Draws and rasters report the share of all robots, and can be stopped.
+        if (options.progress) options_.progress = [this, &options](double) { options.progress(share_); };
+        for (const FleetKind& kind : kinds) poses_.emplace_back(kind, options_);
     }
+    Placer(const Placer&) = delete;  // options_.progress refers to this object
 
     Fleet run()
     {
@@ -124,7 +127,8 @@ private:
             wanted += kinds_[k].count.value_or(0);
             found += found_[k].size();
         }
-        if (options_.progress && wanted > 0) options_.progress(std::min(1.0, double(found) / double(wanted)));
+        if (wanted > 0) share_ = std::min(1.0, double(found) / double(wanted));
+        if (options_.progress) options_.progress(share_);
     }
 
     /// Draws poses of a kind until there are enough robots, or until few of the poses have room.
@@ -301,7 +305,8 @@ private:
     static constexpr std::uint64_t shuffles = std::uint64_t{1} << 31;  // streams of shuffled rasters
 
     const std::span<const FleetKind> kinds_;
-    const FleetOptions& options_;
+    FleetOptions options_;
+    double share_ = 0;  ///< of the robots with a count that have been placed
     PlacedRobots placed_;
     std::vector<KindPoses> poses_;
     std::vector<std::vector<Stand>> found_;  ///< by kind

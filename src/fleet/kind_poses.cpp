@@ -76,7 +76,7 @@ std::vector<Stand> KindPoses::drawn(const SampleOptions& wanted, FleetKindResult
     SampleOptions options = wanted;
     options.min_distance = 0;
     options.threads = options_.threads;
-    options.progress = {};
+    options.progress = options_.progress;
     const SpawnList list = sample(kind_.judge, options);
     result.exact_checks += list.exact_checks;
     const bool is_settled = list.stance == Stance::Settled;
@@ -113,7 +113,8 @@ std::vector<Stand> KindPoses::raster_of(const Heading& heading, FleetProof& proo
                                 .heading = heading.rule,
                                 .is_reachable = spawns.is_reachable,
                                 .layers = spawns.layers,
-                                .threads = options_.threads};
+                                .threads = options_.threads,
+                                .progress = options_.progress};
     const RasterResult raster = spawnfield::raster(kind_.judge, options);
     result.exact_checks += raster.exact_checks;
     proof.poses += raster.poses.size();

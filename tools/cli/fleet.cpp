@@ -67,6 +67,10 @@ struct Member {
         spawns.yaw = yaw.yaw;
         spawns.heading = yaw.rule;
         islands = island_choice(query, args.islands, command);
+        if (plan.island && !query.is_settled())
+            throw ArgumentError(
+                "--island is only for settled robots, because islands are where they can drive; leave "
+                "--stance level out");
         if (args.fill_step) parse_positive("--fill-step", *args.fill_step);
     }
 
@@ -316,6 +320,10 @@ Ending run_fleet(const FleetInputs& inputs, const CLI::App& command, Summary& su
 {
     check_options(inputs, command);
     const FleetFile file = inputs.fleet.fill ? one_kind(inputs) : read_fleet(inputs.fleet.file);
+    if (file.one_island && !inputs.query.is_settled())
+        throw FileError(inputs.fleet.file,
+                        "one_island is true, but it is only for settled robots, because islands are "
+                        "where they can drive; leave --stance level out");
     Member(inputs, FleetFileKind{}).read(command);  // refuses wrong options of the command line itself
     std::vector<Member> members;
     for (const FleetFileKind& kind : file.kinds) members.emplace_back(inputs, kind);
