@@ -211,13 +211,17 @@ private:
     /// Draws places for the first robot of a formation, then tries those of its raster.
     void place_anywhere(const Group& group)
     {
-        constexpr std::size_t tries = 4096;
+        constexpr std::size_t most_tries = 4096;
         const std::size_t kind = group.kinds[0];
         FleetKindResult& result = out_.kinds[kind];
-        const std::vector<Stand> stands = poses_[kind].draw(tries, stream(kind, 0), result, group.formation->heading);
-        for (const Stand& stand : stands) {
-            ++result.draws;
-            if (try_around(group, stand)) return;
+        for (std::size_t batch = smallest_batch, number = 0; result.draws < most_tries; batch *= 2, ++number) {
+            const std::vector<Stand> stands = poses_[kind].draw(batch, stream(kind, number), result,
+                                                                group.formation->heading);
+            for (const Stand& stand : stands) {
+                ++result.draws;
+                if (try_around(group, stand)) return;
+            }
+            if (stands.size() < batch) break;
         }
         FleetProof proof{.step = poses_[kind].step(), .headings = KindPoses::random_headings};
         if (group.formation->heading && group.formation->form != Formation::Form::Circle) proof.headings = 1;
@@ -229,7 +233,9 @@ private:
                 if (try_around(group, stand)) return;
         }
         result.proof = proof;
-        missing(group, "at none of the places that were tried, all robots have room");
+        missing(group, "all robots have room at none of the " + std::to_string(proof.valid) +
+                           " valid poses of the first robot on a raster with steps of " + rounded(proof.step) +
+                           " m and " + std::to_string(proof.headings) + " headings");
     }
 
     /// Tries a formation whose first robot is at this pose.

@@ -215,7 +215,7 @@ void SimulatorOutput::notice_about_world(const Map& map) const
 {
     const fs::path baked = map.scene_file;
     const bool is_world = baked.extension() == ".world" || baked.extension() == ".sdf";
-    if (sdf_.world_file.empty() || !is_world || fs::path(sdf_.world_file).filename() == baked) return;
+    if (args_.world.empty() || !is_world || fs::path(sdf_.world_file).filename() == baked) return;
     notice(common_, "the robots are added to " + fs::path(sdf_.world_file).string() + ", but the map was baked from " +
                         map.scene_file + "; are they the same world?");
 }
