@@ -152,6 +152,21 @@ TEST_CASE("a fleet of which a part has no room is written, with status 3 and wha
                             Contains("valid poses of a raster with steps of 0.25 m and 1 heading"));
     CHECK_THAT(run.err, !Contains("a: only"));
     CHECK_THAT(bytes_of(arena / "fleet.csv"), Contains("a_2,a,") && Contains("b_1,b,"));
+    // A kind that fills comes after all others, and says so.
+    arena.write("fleet.yaml",
+                head + "robots:\n- {name: fill, robot: 'box:0.8,0.8,1', count: fill, region: '-9,1,-6,4'}\n" +
+                    "- {name: one, robot: 'box:1,1,1', count: 1, region: '-9,1,-6,4'}\n");
+    const ProgramRun filled = arena.fleet("--format json");
+    CHECK(filled.status == 0);
+    const Json json = Json::parse(filled.out);
+    CHECK(json["robots"].size() > 2);
+    CHECK(json["robots"].back()["name"] == "one");
+    CHECK(json["robots"][0]["name"] == "fill_1");
+    CHECK(json["kinds"][0]["proof"]["step"] == 0.2);
+    CHECK(json["kinds"][0]["proof"]["valid"] > 50);
+    CHECK_FALSE(json["kinds"][0].contains("wanted"));
+    CHECK_FALSE(json["kinds"][1].contains("proof"));
+    CHECK_THAT(filled.err, Contains("fill: " + std::to_string(json["robots"].size() - 1) + " robots, and none can be"));
     arena.write("fleet.yaml", head +
                                   "robots:\n- {name: a, robot: 'box:1,1,1', count: 2, formation: {shape: line, "
                                   "spacing: 0.9, at: [3, -2.5], heading: 90}}\n");
