@@ -267,6 +267,25 @@ TEST_CASE("formations of a file stand in their shape, and a convoy drives from o
     CHECK(cars[0].position.x() > -6);
 }
 
+TEST_CASE("the example fleet of the training arena is complete")
+{
+    const Arena arena;
+    const ProgramRun run = arena("sample map --seed 2 --reach-step 0.4 --fleet '" + source_folder() +
+                                 "/maps/training/fleet.yaml'");
+    REQUIRE(run.status == 0);
+    CHECK_THAT(run.err, Contains("18 of 18 robots"));
+    const PoseTable table = parse_poses(run.out, "fleet");
+    const std::vector<std::string> kinds = column_of(table, "kind");
+    CHECK(
+        std::ranges::any_of(table.poses, [](const Pose& pose) { return pose.rotation(2, 2) < 0.99; }));  // on the ramp
+    for (std::size_t i = 0; i < kinds.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            const bool is_mixed = (kinds[i] == "cart") != (kinds[j] == "cart") &&
+                                  (kinds[i] == "husky") != (kinds[j] == "husky") && kinds[j] == "husky";
+            CHECK((table.poses[i].position - table.poses[j].position).norm() >= (is_mixed ? 2 : 0.8));
+        }
+}
+
 TEST_CASE("faults in fleet files are named with file, line, key and what is allowed")
 {
     const FleetArena arena;
