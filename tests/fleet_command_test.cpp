@@ -337,8 +337,8 @@ TEST_CASE("faults in fleet files are named with file, line, key and what is allo
     refuses("one_island: true\nrobots:\n- " + kind + "}\n", "one_island is true, but it is only for settled",
             "--stance level");
     refuses_kind(", island: largest", "island is only for settled robots", "--stance level");
-    arena.write("fleet.yaml", head + "robots:\n- {name: a, robot: none.yaml, count: 1}\n");
-    CHECK_THAT(arena.fleet().err, Contains("none.yaml: does not exist"));
+    refuses("robots:\n- {name: a, robot: none.yaml, count: 1}\n",
+            "robots \"a\" (line 3): robot is none.yaml, which does");
     CHECK_THAT(arena.fleet("--name a").err, Contains("--name is for one kind of robot"));
     CHECK_THAT(arena.fleet("--yaw north").err, Contains("--yaw is \"north\""));
     CHECK_THAT(arena("sample map -n 3").err, Contains("--robot is required, or --fleet"));

@@ -126,6 +126,10 @@ std::vector<Session> open_sessions(const FleetInputs& inputs, const std::vector<
     for (const Member& member : members)
         for_kind(inputs, member.plan, [&] {
             const QueryArgs& args = member.args.query;
+            if (!member.plan.place.empty() && !args.robot.starts_with("box:") && !fs::exists(args.robot))
+                throw FileError(inputs.fleet.file, member.plan.place + ": robot is " + args.robot +
+                                                       ", which does not exist; give a path from the folder of this "
+                                                       "file, or box:LX,LY,LZ");
             if (out.empty()) return void(out.push_back(open_session(args, summary)));
             Session session{.map = out[0].map, .robot = load_robot(args.robot, robot_options(args)), .judge = {}};
             notices(args, session.robot.notices);
