@@ -20,6 +20,7 @@ struct RobotStart {
     std::string name_space;  ///< namespace of its ROS topics and nodes
     Vec3 position = Vec3::Zero();
     Rpy rpy = {};
+    std::string model = {};  ///< ROS, SDF: file or URI of its model; empty: that of the function's options
 };
 
 /// Returns one name for each robot: `{i}` in the pattern becomes the robot's number, beginning with 1; `{i:03}` becomes
@@ -97,6 +98,13 @@ struct KeyframeOptions {
 /// Returns <key qpos> elements for MuJoCo, to add to a model with <include>. Each robot has a free joint: x y z and the
 /// quaternion w x y z.
 SPAWNFIELD_API std::string mujoco_keyframes(std::span<const RobotStart> robots, const KeyframeOptions& options);
+
+/// Returns a model for MuJoCo with a body and a free joint for each robot, and the key "spawns" of their poses. The
+/// geoms are the robots' collision shapes; a hull is a mesh in the file itself. MuJoCo computes the masses from them.
+/// `kind_of` has the index of each robot in `kinds`. To add a world, put both into a file with <include>. Throws
+/// ArgumentError if robots and kind_of differ in size.
+SPAWNFIELD_API std::string mujoco_bodies(std::span<const RobotStart> robots, std::span<const Robot> kinds,
+                                         std::span<const std::size_t> kind_of);
 
 enum class QuaternionOrder { Wxyz, Xyzw };
 

@@ -4,6 +4,8 @@
 
 #include <spawnfield/error.h>
 
+#include <algorithm>
+
 namespace spawnfield {
 namespace {
 
@@ -21,6 +23,28 @@ void check(const char* function, const LaunchOptions& options)
     if (ends_with_any(options.file, {".xacro"}))
         throw ArgumentError(function,
                             options.file + " is a template, needs a URDF; make one first (xacro FILE > robot.urdf)");
+}
+
+/// Returns the options for one robot, which may have a model of its own. Throws ArgumentError for a wrong model.
+LaunchOptions options_for(const char* function, const RobotStart& robot, const LaunchOptions& options)
+{
+    LaunchOptions out = options;
+    if (!robot.model.empty()) out.file = robot.model;
+    check(function, out);
+    return out;
+}
+
+bool have_models(std::span<const RobotStart> robots)
+{
+    return std::ranges::any_of(robots, [](const RobotStart& robot) { return !robot.model.empty(); });
+}
+
+/// Throws ArgumentError for a file that a launch file in Python cannot name.
+void check_python_file(const std::string& file)
+{
+    if (file.find("$(") != std::string::npos)
+        throw ArgumentError("ros2_launch_py",
+                            file + " has a $(…), which is for launch files in XML; name the file itself");
 }
 
 /// Returns the arguments of a pose: "-x 1 -y 2 -z 0 -R 0 -P 0 -Y 0".
@@ -45,18 +69,19 @@ std::string attribute(const std::string& name, const std::string& value) { retur
 
 std::string ros1_launch(std::span<const RobotStart> robots, const LaunchOptions& options)
 {
-    check("ros1_launch", options);
-    const bool is_sdf = options.file.ends_with(".sdf"), has_parameter = !options.file.empty() && !is_sdf;
-    const std::string source = is_sdf ? "-sdf -file " + argument(options.file)
-                                      : "-urdf -param " + argument(has_parameter ? "robot_description" : options.topic);
+    if (!have_models(robots)) check("ros1_launch", options);
     std::string joints;
     for (const auto& [joint, value] : options.joints) joints += " -J " + argument(joint) + " " + plain_number(value);
     std::string text = "<?xml version=\"1.0\"?>\n<!-- " + made_by(robots.size()) +
                        ": m, rad, x forward, y left, z up (REP-103) -->\n<launch>\n";
     for (const RobotStart& robot : robots) {
+        const LaunchOptions own = options_for("ros1_launch", robot, options);
+        const bool is_sdf = own.file.ends_with(".sdf"), has_parameter = !own.file.empty() && !is_sdf;
+        const std::string source = is_sdf ? "-sdf -file " + argument(own.file)
+                                          : "-urdf -param " + argument(has_parameter ? "robot_description" : own.topic);
         text += "  <group" + attribute("ns", xml_escaped(robot.name_space)) + ">\n";
         if (has_parameter)
-            text += "    <param name=\"robot_description\"" + attribute("textfile", xml_escaped(options.file)) + "/>\n";
+            text += "    <param name=\"robot_description\"" + attribute("textfile", xml_escaped(own.file)) + "/>\n";
         text += "    <node name=\"spawn_model\" pkg=\"gazebo_ros\" type=\"spawn_model\" output=\"screen\"" +
                 attribute("args", source + " -model " + argument(robot.name) + " " + pose_arguments(robot) + joints) +
                 "/>\n  </group>\n";
@@ -66,16 +91,19 @@ std::string ros1_launch(std::span<const RobotStart> robots, const LaunchOptions&
 
 std::string ros2_launch_xml(std::span<const RobotStart> robots, const LaunchOptions& options)
 {
-    check("ros2_launch_xml", options);
+    if (!have_models(robots)) check("ros2_launch_xml", options);
     const std::string world = options.world.empty() ? "" : "-world " + argument(options.world) + " ";
-    const std::string source = options.file.empty() ? "-topic " + argument(options.topic)
-                                                    : "-file " + argument(options.file);
+    const auto source_of = [&](const RobotStart& robot) {
+        const LaunchOptions own = options_for("ros2_launch_xml", robot, options);
+        return own.file.empty() ? "-topic " + argument(own.topic) : "-file " + argument(own.file);
+    };
     std::string text = "<?xml version=\"1.0\"?>\n<!-- " + made_by(robots.size()) +
                        ": m, rad, x forward, y left, z up (REP-103) -->\n<launch>\n";
     for (const RobotStart& robot : robots)
         text += "  <node pkg=\"ros_gz_sim\" exec=\"create\" name=\"create\" output=\"screen\"" +
                 attribute("namespace", xml_escaped(robot.name_space)) + "\n        " +
-                attribute("args", world + source + " -name " + argument(robot.name) + " " + pose_arguments(robot))
+                attribute("args",
+                          world + source_of(robot) + " -name " + argument(robot.name) + " " + pose_arguments(robot))
                     .substr(1) +
                 "/>\n";
     return text + "</launch>\n";
@@ -83,19 +111,27 @@ std::string ros2_launch_xml(std::span<const RobotStart> robots, const LaunchOpti
 
 std::string ros2_launch_py(std::span<const RobotStart> robots, const LaunchOptions& options)
 {
-    check("ros2_launch_py", options);
-    if (options.file.find("$(") != std::string::npos)
-        throw ArgumentError("ros2_launch_py",
-                            options.file + " has a $(…), which is for launch files in XML; name the file itself");
+    const bool has_models = have_models(robots);
+    if (!has_models) check("ros2_launch_py", options);
+    check_python_file(options.file);
     std::string text = "\"\"\"" + made_by(robots.size()) +
                        ": m, rad, x forward, y left, z up (REP-103).\"\"\"\n"
                        "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n";
-    const std::string source = options.file.empty() ? "'-topic', " + python_quoted(options.topic)
-                                                    : "'-file', " + python_quoted(options.file);
+    const auto source_of = [](const LaunchOptions& from) {
+        return from.file.empty() ? "'-topic', " + python_quoted(from.topic) : "'-file', " + python_quoted(from.file);
+    };
     const std::string world = options.world.empty() ? "" : "'-world', " + python_quoted(options.world) + ", ";
-    text += "SOURCE = [" + world + source + "]\nROBOTS = [  # name, namespace, x, y, z, roll, pitch, yaw\n";
+    const std::string first = has_models ? "source, name" : "name";  // of a row: a model for each robot, or for all
+    if (!has_models) text += "SOURCE = [" + world + source_of(options) + "]\n";
+    text += "ROBOTS = [  # " + first + ", namespace, x, y, z, roll, pitch, yaw\n";
     for (const RobotStart& robot : robots) {
-        text += "    (" + python_quoted(robot.name) + ", " + python_quoted(robot.name_space);
+        text += "    (";
+        if (has_models) {
+            const LaunchOptions own = options_for("ros2_launch_py", robot, options);
+            check_python_file(own.file);
+            text += "[" + world + source_of(own) + "], ";
+        }
+        text += python_quoted(robot.name) + ", " + python_quoted(robot.name_space);
         for (const double value : {robot.position.x(), robot.position.y(), robot.position.z(), robot.rpy.roll,
                                    robot.rpy.pitch, robot.rpy.yaw}) {
             text += ", ";
@@ -108,9 +144,12 @@ std::string ros2_launch_py(std::span<const RobotStart> robots, const LaunchOptio
            "    return LaunchDescription([\n"
            "        Node(package='ros_gz_sim', executable='create', name='create', namespace=namespace, "
            "output='screen',\n"
-           "             arguments=SOURCE + ['-name', name, '-x', str(x), '-y', str(y), '-z', str(z),\n"
+           "             arguments=" +
+           (has_models ? "source" : "SOURCE") +
+           " + ['-name', name, '-x', str(x), '-y', str(y), '-z', str(z),\n"
            "                                 '-R', str(roll), '-P', str(pitch), '-Y', str(yaw)])\n"
-           "        for name, namespace, x, y, z, roll, pitch, yaw in ROBOTS])\n";
+           "        for " +
+           first + ", namespace, x, y, z, roll, pitch, yaw in ROBOTS])\n";
 }
 
 }  // namespace spawnfield

@@ -5,6 +5,7 @@
 
 #include <spawnfield/error.h>
 
+#include <algorithm>
 #include <set>
 #include <sstream>
 
@@ -19,10 +20,16 @@ void add_text(XMLElement& parent, const char* name, const std::string& text)
     parent.InsertNewChildElement(name)->SetText(text.c_str());
 }
 
-void add_robot(XMLElement& world, const RobotStart& robot, const std::string& uri)
+/// Returns the URI of a robot's own model, or of that of all robots.
+const std::string& uri_of(const RobotStart& robot, const SdfWorldOptions& options)
+{
+    return robot.model.empty() ? options.uri : robot.model;
+}
+
+void add_robot(XMLElement& world, const RobotStart& robot, const SdfWorldOptions& options)
 {
     XMLElement& include = *world.InsertNewChildElement("include");
-    add_text(include, "uri", uri);
+    add_text(include, "uri", uri_of(robot, options));
     add_text(include, "name", robot.name);
     add_text(include, "pose", spaced(robot));
 }
@@ -142,7 +149,7 @@ std::string inserted(std::span<const RobotStart> robots, const SdfWorldOptions& 
     const auto add_line = [&](const std::string& content) { out += margin + content + "\n"; };
     for (const RobotStart& robot : robots) {
         add_line("  <include>");
-        add_line("    <uri>" + xml_escaped(options.uri) + "</uri>");
+        add_line("    <uri>" + xml_escaped(uri_of(robot, options)) + "</uri>");
         add_line("    <name>" + xml_escaped(robot.name) + "</name>");
         add_line("    <pose>" + spaced(robot) + "</pose>");
         add_line("  </include>");
@@ -162,7 +169,7 @@ std::string filled(std::span<const RobotStart> robots, const SdfWorldOptions& op
             throw FileError(options.world_file, "line " + std::to_string(found.element->GetLineNum()) +
                                                     ": <world> has a \"" + robot.name +
                                                     "\" already; give the robots other names");
-    for (const RobotStart& robot : robots) add_robot(*found.element, robot, options.uri);
+    for (const RobotStart& robot : robots) add_robot(*found.element, robot, options);
     const std::string text = inserted(robots, options, found.index);
     tinyxml2::XMLDocument again;
     if (!text.empty() &&
@@ -175,14 +182,16 @@ std::string filled(std::span<const RobotStart> robots, const SdfWorldOptions& op
 
 std::string sdf_world(std::span<const RobotStart> robots, const SdfWorldOptions& options)
 {
-    if (options.uri.empty()) throw ArgumentError("sdf_world", "needs the URI of the robot's model");
+    const bool have_models = std::ranges::none_of(robots, [](const RobotStart& robot) { return robot.model.empty(); });
+    if (options.uri.empty() && (robots.empty() || !have_models))
+        throw ArgumentError("sdf_world", "needs the URI of the robot's model");
     if (!options.world_text.empty()) return filled(robots, options);
     tinyxml2::XMLDocument document;
     document.Parse("<?xml version=\"1.0\"?>\n<sdf version=\"1.7\"/>\n");
     XMLElement& world = *document.FirstChildElement("sdf")->InsertNewChildElement("world");
     world.SetAttribute("name", options.world_name.empty() ? "spawns" : options.world_name.c_str());
     world.InsertNewComment((" " + made_by(robots.size()) + ": m, rad, x forward, y left, z up (REP-103) ").c_str());
-    for (const RobotStart& robot : robots) add_robot(world, robot, options.uri);
+    for (const RobotStart& robot : robots) add_robot(world, robot, options);
     return printed(document);
 }
 

@@ -6,7 +6,7 @@ import argparse
 import shlex
 import xml.etree.ElementTree
 
-from truth import FOLDER, ROBOTS, URDF, check_pose, from_rpy
+from truth import FOLDER, MODELS, ROBOTS, URDF, check_pose, from_rpy
 
 try:
     import roslaunch.config
@@ -51,6 +51,15 @@ for name in ('file', 'sdf', 'topic'):
         assert args.param == {'file': 'robot_description', 'sdf': None, 'topic': 'description'}[name]
         assert parameters == ({'robot_description': URDF} if name == 'file' else {})
         check_pose(robot, (args.x, args.y, args.z), from_rpy(args.R, args.P, args.Y))
+
+read = list(groups(FOLDER / 'fleet.launch'))
+assert len(read) == len(ROBOTS)
+for number, (robot, (namespace, parameters, arguments)) in enumerate(zip(ROBOTS, read)):
+    args = spawn_model(arguments)
+    assert (namespace, args.model) == (robot['namespace'], robot['name'])
+    assert parameters == ({} if number % 2 else {'robot_description': MODELS[0]})
+    assert (args.sdf, args.file) == ((True, MODELS[1]) if number % 2 else (False, None))
+    check_pose(robot, (args.x, args.y, args.z), from_rpy(args.R, args.P, args.Y))
 
 for _, parameters, arguments in groups(FOLDER / 'find.launch'):
     assert parameters == {'robot_description': '$(find roslaunch)/husky.urdf'}

@@ -9,7 +9,7 @@ import sys
 import types
 import xml.etree.ElementTree
 
-from truth import FOLDER, ROBOTS, URDF, check_pose, from_rpy
+from truth import FOLDER, MODELS, ROBOTS, URDF, check_pose, from_rpy
 
 
 class Node:
@@ -52,14 +52,16 @@ def flags(arguments):
 
 
 install_stand_ins()
-for name in ('file.launch.py', 'topic.launch.py', 'file.launch.xml', 'topic.launch.xml'):
+for name in ('file.launch.py', 'topic.launch.py', 'file.launch.xml', 'topic.launch.xml', 'fleet.launch.py',
+             'fleet.launch.xml'):
     file = FOLDER / name
     read = list(nodes_of_python(file) if name.endswith('.py') else nodes_of_xml(file))
     assert len(read) == len(ROBOTS)
-    for robot, (namespace, arguments) in zip(ROBOTS, read):
+    for number, (robot, (namespace, arguments)) in enumerate(zip(ROBOTS, read)):
         assert namespace == robot['namespace']
         got = flags(arguments)
         pose = [float(got.pop(key)) for key in 'xyzRPY']
-        expected = {'world': "arena's", 'file': URDF} if name.startswith('file') else {'topic': 'robot_description'}
+        file_of = {'file': URDF, 'fleet': MODELS[number % 2]}.get(name.split('.')[0])
+        expected = {'world': "arena's", 'file': file_of} if file_of else {'topic': 'robot_description'}
         assert got == {'name': robot['name'], **expected}
         check_pose(robot, pose[:3], from_rpy(*pose[3:]))

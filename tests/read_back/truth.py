@@ -8,6 +8,8 @@ FOLDER = pathlib.Path(sys.argv[1])
 ROBOTS = json.loads((FOLDER / 'truth.json').read_text())
 URDF = '/opt/a robot\'s <home> & "more"/husky.urdf'
 
+MODELS = ["/opt/a robot's/husky.urdf", '/opt/cart.sdf']  # of fleets, in turn
+
 
 def multiply(a, b):
     return [[sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)] for i in range(3)]

@@ -3,6 +3,7 @@
 #include "worlds/random.h"
 
 #include <spawnfield/output_file.h>
+#include <spawnfield/robot_parts.h>
 #include <spawnfield/simulators.h>
 
 #include <nlohmann/json.hpp>
@@ -51,6 +52,29 @@ nlohmann::json truth_of(const std::vector<RobotStart>& robots)
     return out;
 }
 
+/// Robots of two kinds, with a model each: files of fleets.
+void write_fleet(const fs::path& folder, std::vector<RobotStart> robots)
+{
+    const std::vector<std::string> models{"/opt/a robot's/husky.urdf", "/opt/cart.sdf"};
+    const Pose turned{{0.1, -0.2, 0.3}, rotation_from_rpy(0.3, -0.2, 0.9)};
+    const std::vector<Vec3> corners{{0, 0, 0}, {0.6, 0, 0}, {0, 0.4, 0}, {0, 0, 0.5}, {0.6, 0.4, 0.5}};
+    const std::vector<Robot> kinds{
+        make_robot("husky",
+                   {shape_part(box_shape({1, 0.6, 0.4}, turned)), shape_part(sphere_shape(0.2, {0, 0, 1})),
+                    shape_part(cylinder_shape(0.1, 0.5, turned)), shape_part(capsule_shape(0.1, 0.5, turned))}),
+        make_robot("cart", {hull_part(corners)})};
+    std::vector<std::size_t> kind_of;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+        kind_of.push_back(i % 2);
+        robots[i].model = models[i % 2];
+    }
+    const auto write = [&](const char* name, const std::string& text) { write_file_atomically(folder / name, text); };
+    write("fleet.launch", ros1_launch(robots, {}));
+    write("fleet.launch.py", ros2_launch_py(robots, {.world = "arena's"}));
+    write("fleet.launch.xml", ros2_launch_xml(robots, {.world = "arena's"}));
+    write("bodies.xml", mujoco_bodies(robots, kinds, kind_of));
+}
+
 void write_all(const fs::path& folder)
 {
     const std::vector<RobotStart> robots = random_robots(60);
@@ -82,6 +106,7 @@ void write_all(const fs::path& folder)
     write("unity.csv", unity_csv(robots, Frame::Unity));
     write("unity_gltf.csv", unity_csv(robots, Frame::UnityGltf));
     write("unreal.csv", unreal_csv(robots));
+    write_fleet(folder, robots);
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ IslandChoice island_choice(const QueryArgs& query, const IslandArgs& args, const
                "is only for settled robots, because islands are where they can drive; leave --stance level out");
     IslandChoice out{.min_area = args.min_island};
     if (command.count("--min-island") > 0) parse_positive("--min-island", args.min_island);
-    if (command.count("--island") > 0) parse_island(args.island, out);
+    if (command.count("--island") > 0 || !args.island.empty()) parse_island(args.island, out);
     for (const std::string& text : args.reachable_from)
         out.reachable_from.push_back(parse_place("--reachable-from", text));
     return out;

@@ -189,7 +189,7 @@ SimulatorOutput::SimulatorOutput(const CommonArgs& common, const CLI::App& comma
 void SimulatorOutput::notice_about_model(const Robot& robot) const
 {
     constexpr double noticeable = 0.005;  // m
-    const std::string uri = is("sdf") ? sdf_.uri : is_ros() ? launch_.file : "";
+    const std::string uri = model();
     const fs::path file = model_on_disk(uri, target_.reading.model_paths);
     std::error_code ignored;
     if (file.empty() || robot.parts.empty() || fs::equivalent(file, target_.robot, ignored)) return;
@@ -215,7 +215,7 @@ void SimulatorOutput::notice_about_world(const Map& map) const
 {
     const fs::path baked = map.scene_file;
     const bool is_world = baked.extension() == ".world" || baked.extension() == ".sdf";
-    if (sdf_.world_file.empty() || !is_world || fs::path(sdf_.world_file).filename() == baked) return;
+    if (args_.world.empty() || !is_world || fs::path(sdf_.world_file).filename() == baked) return;
     notice(common_, "the robots are added to " + fs::path(sdf_.world_file).string() + ", but the map was baked from " +
                         map.scene_file + "; are they the same world?");
 }

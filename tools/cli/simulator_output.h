@@ -51,6 +51,9 @@ public:
     /// Prints a notice if robots are added to another world than the one from which the map was baked.
     void notice_about_world(const Map& map) const;
 
+    /// Returns the file or URI of the robot's model in a launch file or an SDF world; empty if there is none.
+    std::string model() const { return is("sdf") ? sdf_.uri : is_ros() ? launch_.file : ""; }
+
     /// Gives the robots names and namespaces. Without --name their `own` names are used, if there are any.
     void give_names(std::vector<RobotStart>& robots, const std::vector<std::string>& own = {}) const;
 

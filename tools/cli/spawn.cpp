@@ -2,6 +2,7 @@
 #include "area_args.h"
 #include "avoid_args.h"
 #include "command.h"
+#include "fleet_args.h"
 #include "ground_args.h"
 #include "messages.h"
 #include "numbers.h"
@@ -31,6 +32,7 @@ struct SpawnArgs : QueryArgs {
     GroundArgs ground;
     IslandArgs islands;  ///< only for `sample`
     PairArgs pairs;      ///< only for `sample`
+    FleetArgs fleet;     ///< only for `sample`
     PlaceArgs places;    ///< only for `sample`
     std::string bounds, yaw = "0", format = "csv", out;
 
@@ -317,8 +319,13 @@ Ending run_pairs(const SpawnArgs& args, const CLI::App& command, Summary& summar
 
 Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summary)
 {
+    if (asks_for_fleet(command))
+        return run_fleet({args.fleet, args, args.draws, args.simulator, args.area, args.avoid, args.ground,
+                          args.islands, args.yaw, args.format, args.out},
+                         command, summary);
+    if (args.robot.empty()) throw ArgumentError("--robot is required, or --fleet");
     if (command.count("--pairs") > 0) return run_pairs(args, command, summary);
-    if (command.count("--count") == 0) throw ArgumentError("--count is required, or --pairs");
+    if (command.count("--count") == 0) throw ArgumentError("--count is required, or --pairs, --fill or --fleet");
     refuse_pair_options(command, args.format);
     check_draws(args.draws);
     IslandChoice islands = island_choice(args, args.islands, command);
@@ -416,13 +423,17 @@ void add_sample(CLI::App& app, ChosenCommand& chosen)
     add_stance(command, *args, Stance::Settled);
     add_islands(command, args->islands);
     add_pairs(command, args->pairs);
+    add_fleet(command, args->fleet);
+    command.get_option("--robot")->required(false);  // not for --fleet
     add_places(command, args->places);
     add_spawn_groups(command, *args);
     command.footer(
         "Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random\n"
         "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --island largest --reach-step 0.3\n"
         "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 --pairs 20 --min-path 5 --reach-step 0.3\n"
-        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --near 'cube*' 0.5:1 --facing 'cube*'");
+        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --near 'cube*' 0.5:1 --facing 'cube*'\n"
+        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 --fill --min-distance 3\n"
+        "  spawnfield sample /tmp/training --fleet maps/training/fleet.yaml -o /tmp/fleet.csv");
     set_work(command, args, chosen, run_sample);
 }
 
