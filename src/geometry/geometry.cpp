@@ -1,5 +1,6 @@
 #include "base/parallel.h"
 #include "geometry/geometry_impl.h"
+#include "geometry/part_hashes.h"
 #include "scene/elements.h"
 
 #include <cmath>
@@ -100,6 +101,7 @@ Geometry::Geometry(const Scene& scene, int threads)
     impl->elements = spawnfield::element_count(scene);
     impl->parts = scene.parts;
     impl->labels = scene.count_labels();
+    impl->part_hashes = hashes_of_parts(scene, threads);
     impl->has_filled_meshes = has_filled_meshes(scene);
     if (impl->elements > 0) impl->bounds = scene.bounds();
     impl->next = {std::uint32_t(impl->elements), std::uint32_t(scene.pieces.size()), std::uint32_t(scene.parts.size())};
