@@ -213,7 +213,7 @@ TEST_CASE("refused input ends with status 4, and the message names file, place, 
     std::filesystem::create_symlink("/dev/zero", desk / "endless.yaml");
     desk.remember();
     const std::string keys =
-        "box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap, name, label, xyz, rpy, rpy_deg, up, "
+        "box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap, name, label, path, xyz, rpy, rpy_deg, up, "
         "scale, "
         "solid, "
         "sides, labels, auto_label, unknown";
