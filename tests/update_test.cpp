@@ -120,12 +120,18 @@ using Names = std::vector<std::string>;
 
 namespace {
 
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+constexpr std::uint64_t step = 1;
+#else
+constexpr std::uint64_t step = 6;  // all changes would take many minutes without optimisation or with a sanitizer
+#endif
+
 /// Makes random changes, each of them forth and back. Returns how many were baked in full.
 std::size_t check_random_changes(std::uint64_t first, std::uint64_t last)
 {
     const Workshop folder;
     std::size_t changed_heights = 0, changed_bounds = 0, full = 0;
-    for (std::uint64_t seed = first; seed <= last; ++seed) {
+    for (std::uint64_t seed = first; seed <= last; seed += step) {
         CAPTURE(seed);
         const Change change = random_change(seed);
         const BakeReport baked[] = {bake(change.before, folder.file, folder / "before", fine(seed)),
@@ -151,6 +157,7 @@ std::size_t check_random_changes(std::uint64_t first, std::uint64_t last)
         changed_bounds += differs("bounds.bin");
         changed_heights += differs("heightmap.png");
     }
+    if (step > 1) return full;
     CHECK(changed_bounds > (last - first) * 8 / 10);  // the changes mattered
     CHECK(changed_heights > (last - first) / 5);
     return full;
