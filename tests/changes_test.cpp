@@ -11,46 +11,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
 
 using namespace spawnfield;
 
 // A changed map gives the same answers, byte for byte, as the map that is baked from the changed scene.
 
 namespace {
-
-/// Returns a scene that consists of some parts of another one, in this order.
-Scene scene_of_parts(const Scene& from, const std::vector<std::uint32_t>& parts)
-{
-    Scene out;
-    out.name = from.name;
-    for (const std::uint32_t part : parts) {
-        const auto number = std::uint32_t(out.parts.size());
-        out.parts.push_back(from.parts[part]);
-        std::map<std::uint32_t, std::uint32_t> vertices;
-        for (const Piece& piece : from.pieces) {
-            if (piece.part != part) continue;
-            const auto first = std::uint32_t(out.triangles.size());
-            for (std::uint32_t t = piece.first_triangle; t < piece.first_triangle + piece.triangle_count; ++t) {
-                Triangle corners = from.triangles[t];
-                for (std::uint32_t& corner : corners) {
-                    const auto [place, is_new] = vertices.emplace(corner, std::uint32_t(out.vertices.size()));
-                    if (is_new) out.vertices.push_back(from.vertices[corner]);
-                    corner = place->second;
-                }
-                out.triangles.push_back(corners);
-                out.triangle_labels.push_back(from.triangle_labels[t]);
-                out.triangle_pieces.push_back(std::uint32_t(out.pieces.size()));
-            }
-            out.pieces.push_back(piece);
-            out.pieces.back().part = number;
-            out.pieces.back().first_triangle = first;
-        }
-        for (const Primitive& primitive : from.primitives)
-            if (primitive.part == part) out.primitives.push_back({primitive.shape, number, primitive.label});
-    }
-    return out;
-}
 
 /// A scene before and after a random change.
 struct RandomChange {

@@ -213,7 +213,8 @@ TEST_CASE("refused input ends with status 4, and the message names file, place, 
     std::filesystem::create_symlink("/dev/zero", desk / "endless.yaml");
     desk.remember();
     const std::string keys =
-        "box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap, name, label, xyz, rpy, rpy_deg, up, scale, "
+        "box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap, name, label, path, xyz, rpy, rpy_deg, up, "
+        "scale, "
         "solid, "
         "sides, labels, auto_label, unknown";
     const std::string needed_header =
@@ -308,7 +309,7 @@ TEST_CASE("every command refuses a damaged map and names the file")
     desk.write("map/map.yaml", "format: spawnfield-map/99" + yaml.substr(yaml.find('\n')));
     for (const std::string& query : queries)
         desk.check({query,
-                    "spawnfield: map/map.yaml: has format version 99, this program reads 2 to 5; bake the map again "
+                    "spawnfield: map/map.yaml: has format version 99, this program reads 2 to 6; bake the map again "
                     "or use a newer spawnfield"},
                    4);
 }

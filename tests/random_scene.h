@@ -15,6 +15,9 @@ spawnfield::Mat3 rotation_of_rpy(double roll, double pitch, double yaw);
 /// closed, nested and open meshes, thin walls, poles, upper storeys and water.
 spawnfield::Scene random_scene(std::uint64_t seed);
 
+/// Returns a scene that consists of some parts of another one, in this order.
+spawnfield::Scene scene_of_parts(const spawnfield::Scene& from, const std::vector<std::uint32_t>& parts);
+
 /// Returns a robot of one to four boxes, round bodies and hulls, up to about 1 m across, mostly above its origin.
 spawnfield::Robot random_robot(std::uint64_t seed);
 

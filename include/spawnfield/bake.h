@@ -44,4 +44,19 @@ struct BakeReport {
 SPAWNFIELD_API BakeReport bake(Scene scene, const std::filesystem::path& scene_file,
                                const std::filesystem::path& folder, const BakeOptions& options = {});
 
+/// Bakes again only the region of a map that has changed. All files are the same, byte for byte, as those of bake().
+///
+/// `folder` has the map of an earlier state of the scene, baked with the same options. `changed_parts` are globs of the
+/// names of all parts that were moved, changed, added or removed since, as for without_parts(); parts that match, but
+/// are the same, cost nothing. "*" finds all changes. Each part has a hash in the map, so a change of a part that no
+/// glob matches is an error, not a wrong map.
+///
+/// If a part changes the bounds of the scene, or another version of the program baked the old map, the map is baked in
+/// full, with a notice. Throws FileError if other parts differ, if `folder` is not a map, or is a damaged one;
+/// ArgumentError for options that are not those of the old map, for globs that match nothing, and for two parts of the
+/// same name; otherwise as bake(). The old map stays until the new one is complete.
+SPAWNFIELD_API BakeReport update_map(Scene scene, const std::filesystem::path& scene_file,
+                                     const std::filesystem::path& folder, const std::vector<std::string>& changed_parts,
+                                     const BakeOptions& options = {});
+
 }  // namespace spawnfield

@@ -4,6 +4,7 @@
 #include <spawnfield/shape.h>
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -84,6 +85,7 @@ struct Scene {
     std::vector<NameRule> rules;         ///< the rules that labelled an SDF or URDF world, in their order
     std::vector<FaceGroup> face_groups;  ///< of all meshes, part after part, in the order of their files
     bool is_unlabelled = false;          ///< no label was given, so everything became terrain
+    bool has_moving_parts = false;       ///< a part has a `path`
     /// The bounds of a map of this scene, unless the caller chooses others; empty: those of the whole scene. Infinite
     /// planes extend beyond them.
     Bounds map_bounds = {};
@@ -102,6 +104,13 @@ struct LabelRule {
 
 /// How the space that an OctoMap has not seen counts, within the box around the space that it has seen.
 enum class Unknown : std::uint8_t { Free, Blocked };
+
+/// A window of time, both ends included; default: all time.
+struct TimeWindow {
+    double from = -std::numeric_limits<double>::infinity(), to = std::numeric_limits<double>::infinity();  ///< s
+
+    bool operator==(const TimeWindow&) const = default;
+};
 
 struct SceneOptions {
     std::vector<LabelRule> labels = {};  ///< applied before the file's own rules; the first match decides
@@ -123,6 +132,8 @@ struct SceneOptions {
     /// Infinite planes are cut 50 m beyond these bounds. Empty: chosen from all other geometry and the drawn sizes
     /// of planes.
     Bounds bounds = {};
+    /// A part with a `path` becomes the space that it sweeps in this window.
+    TimeWindow time = {};
     std::optional<Unknown> unknown = {};  ///< of all OctoMaps; no value: as the scene file says, else Free
 };
 

@@ -1,3 +1,4 @@
+#include "bake/earlier_map.h"
 #include "base/checksum.h"
 #include "base/chosen_bounds.h"
 #include "base/input_file.h"
@@ -5,7 +6,9 @@
 #include "base/parallel.h"
 #include "base/png.h"
 #include "base/stopwatch.h"
+#include "free_space/changed_bounds.h"
 #include "map/bounds_file.h"
+#include "map/changed_occupancy.h"
 #include "map/changed_terrain.h"
 #include "map/geometry_file.h"
 #include "map/map_yaml.h"
@@ -117,18 +120,33 @@ struct WrittenFiles {
     std::vector<std::pair<std::string, double>> seconds;  ///< of each stage; they overlap, so their sum is longer
 };
 
-/// Writes all files but map.yaml, several at the same time: most of them occupy only one core.
-WrittenFiles write_files(const Map& map, const TerrainMap& terrain, const fs::path& folder, int threads,
-                         const Progress& progress)
+std::size_t write_occupancy_of(const Map& map, const EarlierMap* earlier, const fs::path& file, int threads,
+                               const Progress& progress)
+{
+    if (earlier == nullptr)
+        return write_occupancy(file, map.geometry, map.bounds, map.occupancy_resolution, threads, progress);
+    check_listed(earlier->map.folder, "occupancy.bt");
+    return write_changed_occupancy(file, earlier->map.folder / "occupancy.bt", map.geometry, map.bounds,
+                                   map.occupancy_resolution, earlier->boxes, threads);
+}
+
+/// Writes all files but map.yaml, several at the same time: most of them occupy only one core. `earlier` is nullptr for
+/// a full bake.
+WrittenFiles write_files(const Map& map, const TerrainMap& terrain, const EarlierMap* earlier, const fs::path& folder,
+                         int threads, const Progress& progress)
 {
     WrittenFiles out;
     const auto occupancy = [&] {
-        out.occupancy_leaves = write_occupancy(folder / "occupancy.bt", map.geometry, map.bounds,
-                                               map.occupancy_resolution, threads, progress);
+        out.occupancy_leaves = write_occupancy_of(map, earlier, folder / "occupancy.bt", threads, progress);
     };
     const auto heightmap = [&] {
-        const HeightImage top = page_image(terrain, "height.0");
         out.layers = count_layers(terrain);
+        if (earlier != nullptr && has_same_tiles(terrain, earlier->terrain, "height.0")) {
+            copy_heightmap(earlier->map, folder / "heightmap.png");
+            out.heightmap_z = earlier->heightmap_z;
+            return;
+        }
+        const HeightImage top = page_image(terrain, "height.0");
         out.heightmap_z = write_heightmap_png(top, folder / "heightmap.png");
     };
     const std::array<std::pair<const char*, std::function<void()>>, 6> stages{{
@@ -203,7 +221,11 @@ Map make_map(const Scene& scene, const BakeOptions& options)
     return map;
 }
 
-BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder, const BakeOptions& options)
+namespace {
+
+/// Bakes in full if `changed_parts` is nullptr.
+BakeReport bake_scene(Scene scene, const fs::path& scene_file, const fs::path& folder, const BakeOptions& options,
+                      const std::vector<std::string>* changed_parts)
 {
     BakeReport report;
     Stopwatch watch;
@@ -220,14 +242,26 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     const Bounds extent = scene.bounds();
     scene = {};
     lap("geometry");
-    const TerrainMap terrain = rasterize_terrain(map.geometry, frame, options.threads,
-                                                 part_of(options.progress, 0, 0.3), map.z_limits);
+    EarlierState state;
+    if (changed_parts != nullptr) {
+        state = earlier_state(folder, scene_file, map, *changed_parts, options);
+        if (!state.map) report.notices.push_back("the map is baked in full, because " + state.why_not);
+        lap("compare");
+    }
+    const EarlierMap* const earlier = state.map ? &*state.map : nullptr;
+    const TerrainMap terrain = earlier ? changed_terrain(earlier->terrain, map.geometry, earlier->boxes, map.z_limits,
+                                                         options.threads)
+                                       : rasterize_terrain(map.geometry, frame, options.threads,
+                                                           part_of(options.progress, 0, 0.3), map.z_limits);
     map.floors = find_floors(terrain, options.threads);
     lap("terrain");
-    map.solid_bounds = SolidBounds(map.geometry, map.bounds, map.resolution, options.threads,
-                                   part_of(options.progress, 0.3, 0.6));
+    map.solid_bounds = earlier ? made_bounds(changed_bounds(earlier->map.solid_bounds, map.geometry, map.bounds,
+                                                            earlier->boxes),
+                                             options.threads)
+                               : SolidBounds(map.geometry, map.bounds, map.resolution, options.threads,
+                                             part_of(options.progress, 0.3, 0.6));
     lap("bounds");
-    const WrittenFiles files = write_files(map, terrain, target.path(), options.threads,
+    const WrittenFiles files = write_files(map, terrain, earlier, target.path(), options.threads,
                                            part_of(options.progress, 0.6, 0.9));
     map.layers = files.layers;
     report.occupancy_leaves = files.occupancy_leaves;
@@ -243,6 +277,19 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     report.layers = map.layers;
     lap("write");
     return report;
+}
+
+}  // namespace
+
+BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder, const BakeOptions& options)
+{
+    return bake_scene(std::move(scene), scene_file, folder, options, nullptr);
+}
+
+BakeReport update_map(Scene scene, const fs::path& scene_file, const fs::path& folder,
+                      const std::vector<std::string>& changed_parts, const BakeOptions& options)
+{
+    return bake_scene(std::move(scene), scene_file, folder, options, &changed_parts);
 }
 
 }  // namespace spawnfield

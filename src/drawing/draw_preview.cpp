@@ -63,14 +63,17 @@ cv::Mat_<float> samples(const GridFrame& frame, const HeightImage& page, const V
 {
     cv::Mat_<float> result(pixels, std::numeric_limits<float>::quiet_NaN());
     if (page.values.empty()) return result;
+    std::vector<int> cells;  // of the pixels in a row
+    for (int col = 0; col < pixels.width; ++col) {
+        const double x = view.x0 + (col + 0.5) / pixels.width * view.width;
+        cells.push_back(cell_index((x - frame.x0) / frame.cell, frame.cols));
+    }
     for (int row = 0; row < pixels.height; ++row) {
         const double y = view.y0 + view.height - (row + 0.5) / pixels.height * view.height;
         const int from_below = cell_index((y - frame.y0) / frame.cell, frame.rows);
-        for (int col = 0; col < pixels.width && from_below >= 0; ++col) {
-            const double x = view.x0 + (col + 0.5) / pixels.width * view.width;
-            const int cell = cell_index((x - frame.x0) / frame.cell, frame.cols);
-            if (cell >= 0) result(row, col) = page(frame.rows - 1 - from_below, cell);
-        }
+        for (int col = 0; col < pixels.width && from_below >= 0; ++col)
+            if (const int cell = cells[std::size_t(col)]; cell >= 0)
+                result(row, col) = page(frame.rows - 1 - from_below, cell);
     }
     return result;
 }

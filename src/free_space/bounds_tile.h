@@ -138,6 +138,8 @@ struct SolidBounds::Impl {
 
     /// Returns a tile. It is empty if nothing in it is solid. Throws FileError for a damaged tile of a file.
     BoundsTile open(std::size_t level, std::uint32_t col, std::uint32_t row) const;
+    /// Returns the bytes of a tile, with or without zero bytes at the end; none if nothing in it is solid.
+    std::string_view bytes_of(std::size_t level, std::uint32_t col, std::uint32_t row) const;
 };
 
 }  // namespace spawnfield

@@ -1,6 +1,9 @@
 #include "free_space/changed_bounds.h"
 
+#include "base/parallel.h"
 #include "free_space/bounds_raster.h"
+
+#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,13 +34,21 @@ public:
 
     BoundsTile open(std::size_t level, std::uint32_t col, std::uint32_t row) const
     {
+        const std::string* const bytes = bytes_of(level, col, row);
+        if (bytes == nullptr) return raster_.base->open(level, col, row);
+        return bytes->empty() ? BoundsTile() : BoundsTile(*bytes);
+    }
+
+    /// Returns the bytes of a tile that may differ; nullptr for a tile of the unchanged images.
+    const std::string* bytes_of(std::size_t level, std::uint32_t col, std::uint32_t row) const
+    {
         const std::uint32_t number = row * raster_.levels()[level].tile_cols + col;
         const std::vector<std::uint32_t>& numbers = changed_[level].numbers;
         const auto place = std::lower_bound(numbers.begin(), numbers.end(), number);
-        if (place == numbers.end() || *place != number) return raster_.base->open(level, col, row);
+        if (place == numbers.end() || *place != number) return nullptr;
         LazyTile& tile = changed_[level].tiles[std::size_t(place - numbers.begin())];
         std::call_once(tile.is_made, [&] { tile.bytes = made(level, col, row); });
-        return tile.bytes.empty() ? BoundsTile() : BoundsTile(tile.bytes);
+        return &tile.bytes;
     }
 
 private:
@@ -87,10 +98,20 @@ SolidBounds::Impl::~Impl() = default;
 BoundsTile SolidBounds::Impl::open(std::size_t level, std::uint32_t col, std::uint32_t row) const
 {
     if (changed) return changed->open(level, col, row);
+    const std::string_view bytes = bytes_of(level, col, row);
+    return bytes.empty() ? BoundsTile() : BoundsTile(bytes, tile_version);
+}
+
+std::string_view SolidBounds::Impl::bytes_of(std::size_t level, std::uint32_t col, std::uint32_t row) const
+{
+    if (changed) {
+        const std::string* const bytes = changed->bytes_of(level, col, row);
+        return bytes != nullptr ? std::string_view(*bytes) : base->bytes_of(level, col, row);
+    }
     const std::size_t number = std::size_t{row} * tiles.levels()[level].tile_cols + col;
     if (tiles.levels()[level].tiles[number].size == 0) return {};
-    const auto is_consistent = [&](std::string_view bytes) { return BoundsTile::is_consistent(bytes, tile_version); };
-    return BoundsTile(tiles.open(level, number, is_consistent), tile_version);
+    return tiles.open(level, number,
+                      [&](std::string_view bytes) { return BoundsTile::is_consistent(bytes, tile_version); });
 }
 
 SolidBounds changed_bounds(const SolidBounds& base, const Geometry& geometry, const Bounds& bounds,
@@ -102,6 +123,27 @@ SolidBounds changed_bounds(const SolidBounds& base, const Geometry& geometry, co
     impl->is_whole = is_whole_in(geometry.bounds(), bounds);
     impl->base = base.shared_impl();
     impl->changed = std::make_unique<const SolidBounds::Impl::ChangedTiles>(*impl, geometry, boxes);
+    return SolidBounds(std::move(impl));
+}
+
+SolidBounds made_bounds(const SolidBounds& changed, int threads)
+{
+    const SolidBounds::Impl& from = changed.impl();
+    auto impl = std::make_shared<SolidBounds::Impl>();
+    impl->x0 = from.x0;
+    impl->y0 = from.y0;
+    impl->is_whole = from.is_whole;
+    TileStoreBuilder store(XXH64(nullptr, 0, 0));
+    for (std::size_t l = 0; l < from.levels().size(); ++l) {
+        const TileLevel& old = from.levels()[l];
+        TileLevel level(old.cell, old.cols, old.rows, BoundsTile::side);
+        std::vector<std::string> tiles(std::size_t{level.tile_cols} * level.tile_rows);
+        parallel_for(tiles.size(), threads, {}, [&](std::size_t t) {
+            tiles[t] = from.bytes_of(l, std::uint32_t(t % level.tile_cols), std::uint32_t(t / level.tile_cols));
+        });
+        store.add(std::move(level), std::move(tiles), threads);
+    }
+    impl->tiles = store.build();
     return SolidBounds(std::move(impl));
 }
 

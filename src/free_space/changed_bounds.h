@@ -14,4 +14,8 @@ namespace spawnfield {
 SolidBounds changed_bounds(const SolidBounds& base, const Geometry& geometry, const Bounds& bounds,
                            std::span<const ElementBox> boxes);
 
+/// Returns the images of a changed scene with tiles of their own, as a new bake makes them: all tiles that differ are
+/// made, all others are copied. The tiles of the unchanged images must have the version that this program writes.
+SolidBounds made_bounds(const SolidBounds& changed, int threads);
+
 }  // namespace spawnfield

@@ -113,6 +113,7 @@ ChangedGeometry changed_geometry(const Geometry& base, const std::vector<bool>& 
 {
     ChangedGeometry out;
     auto impl = std::make_shared<Geometry::Impl>(base.impl());
+    impl->part_hashes.clear();
     if (std::find(is_removed.begin(), is_removed.end(), true) != is_removed.end())
         remove(base.impl(), is_removed, threads, *impl, out.boxes);
     out.changes_terrain = terrain_elements(impl->labels) != terrain_elements(base.labels()) || added.has_terrain();

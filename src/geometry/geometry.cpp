@@ -1,5 +1,6 @@
 #include "base/parallel.h"
 #include "geometry/geometry_impl.h"
+#include "geometry/part_hashes.h"
 #include "scene/elements.h"
 
 #include <cmath>
@@ -103,7 +104,12 @@ Geometry::Geometry(const Scene& scene, int threads)
     impl->has_filled_meshes = has_filled_meshes(scene);
     if (impl->elements > 0) impl->bounds = scene.bounds();
     impl->next = {std::uint32_t(impl->elements), std::uint32_t(scene.pieces.size()), std::uint32_t(scene.parts.size())};
-    impl->forests = {forest_of(scene, {}, threads)};
+    parallel_for(2, threads, {}, [&](std::size_t task) {
+        if (task == 0)
+            impl->forests = {forest_of(scene, {}, threads)};
+        else
+            impl->part_hashes = hashes_of_parts(scene, threads);
+    });
     impl_ = std::move(impl);
 }
 

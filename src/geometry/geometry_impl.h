@@ -31,6 +31,7 @@ struct Geometry::Impl {
     /// Of the scene, in its order. Removed parts keep their place, with all counts 0; added parts follow.
     std::vector<Part> parts;
     LabelCounts labels{};
+    std::vector<std::uint64_t> part_hashes;  ///< for each part; empty for a changed scene or an old map
     bool has_filled_meshes = false;
     std::vector<std::shared_ptr<const Forest>> forests;
     ElementNumbers next;                   ///< all numbers in the tiles are below these

@@ -1,8 +1,10 @@
 #include "geometry/tile.h"
 
+#include "base/bits.h"
 #include "base/tile_store.h"
 #include "scene/elements.h"
 
+#include <bit>
 #include <functional>
 
 namespace spawnfield {
@@ -16,6 +18,45 @@ std::span<const T> take(const char*& next, std::size_t count)
     next += count * sizeof(T);
     return out;
 }
+
+/// Puts values that lie close together into order with a bit for each, which is faster than sorting.
+class NearValues {
+public:
+    static constexpr std::uint32_t most = 1 << 13;  ///< difference of the largest and the smallest value is below it
+
+    /// numbers[k] becomes the place of values[k] among the distinct values, of which there are at most 256.
+    NearValues(const std::vector<std::uint32_t>& values, std::uint32_t low, std::uint32_t high,
+               std::vector<std::uint8_t>& numbers)
+        : low_(low), words_((high - low) / 64 + 1)
+    {
+        std::fill_n(bits_.begin(), words_, 0);
+        for (const std::uint32_t value : values) bits_[(value - low) / 64] |= std::uint64_t{1} << (value - low) % 64;
+        std::array<std::uint8_t, most / 64> before;  // number of bits in the words before each word
+        for (std::size_t word = 0; word < words_; ++word) {
+            before[word] = std::uint8_t(count_);
+            count_ += std::size_t(std::popcount(bits_[word]));
+        }
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            const std::uint32_t bit = values[k] - low;
+            const std::uint64_t below = (std::uint64_t{1} << bit % 64) - 1;
+            numbers[k] = std::uint8_t(before[bit / 64] + std::popcount(bits_[bit / 64] & below));
+        }
+    }
+
+    std::vector<std::uint32_t> sorted() const
+    {
+        std::vector<std::uint32_t> out;
+        out.reserve(count_);
+        for (std::uint32_t word = 0; word < words_; ++word)
+            for_each_bit(bits_[word], [&](std::uint32_t bit) { out.push_back(low_ + 64 * word + bit); });
+        return out;
+    }
+
+private:
+    std::uint32_t low_;
+    std::size_t words_, count_ = 0;
+    std::array<std::uint64_t, most / 64> bits_;
+};
 
 /// Builds the bytes of one tile.
 class TileBuilder {
@@ -77,6 +118,9 @@ private:
         numbers.assign(values.size(), 0);
         const bool all_equal = std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end();
         if (all_equal && !values.empty()) return {values.front()};  // most often the pieces
+        const auto [low, high] = std::minmax_element(values.begin(), values.end());
+        if (!values.empty() && *high - *low < NearValues::most)
+            return NearValues(values, *low, *high, numbers).sorted();
         std::vector<std::uint64_t> sorted;  // value and place in one number, which is sorted fast
         for (std::size_t k = 0; k < values.size(); ++k) sorted.push_back(std::uint64_t{values[k]} << 8 | k);
         std::sort(sorted.begin(), sorted.end());

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 
 #include <limits>
+#include <span>
 
 namespace spawnfield {
 namespace {
@@ -12,36 +13,43 @@ constexpr float no_limit = std::numeric_limits<float>::infinity(),
 
 ElementBox empty_box() { return {{no_limit, no_limit, no_limit}, {-no_limit, -no_limit, -no_limit}}; }
 
-/// Twice the centre of a box along an axis.
-double centre(const ElementBox& box, std::size_t axis) { return double(box.min[axis]) + double(box.max[axis]); }
+/// An element while elements are put into order. Elements that are compared lie beside each other in memory, unlike
+/// their boxes.
+struct Entry {
+    std::array<double, 3> centre;  ///< twice that of its box
+    std::uint32_t element;
+};
 
 struct Range {
     std::size_t first, end;
     std::size_t tiles() const { return (end - first + TileBoxes::most - 1) / TileBoxes::most; }
 };
 
-/// Splits a range of elements along the longest side of what their centres cover. The first part gets a power of two of
-/// full tiles, so that 16 consecutive tiles are whole parts.
-std::array<Range, 2> split(const std::vector<ElementBox>& boxes, std::vector<std::uint32_t>& order, const Range& range)
+/// Returns the axis along which the centres reach farthest.
+std::size_t longest_axis(std::span<const Entry> entries)
 {
-    std::array<double, 3> low, high;
-    low.fill(std::numeric_limits<double>::infinity());
-    high.fill(-std::numeric_limits<double>::infinity());
-    for (std::size_t k = range.first; k < range.end; ++k)
+    std::array<double, 3> low = entries.front().centre, high = low;
+    for (const Entry& entry : entries)
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], centre(boxes[order[k]], axis));
-            high[axis] = std::max(high[axis], centre(boxes[order[k]], axis));
+            low[axis] = std::min(low[axis], entry.centre[axis]);
+            high[axis] = std::max(high[axis], entry.centre[axis]);
         }
     std::size_t longest = 0;
     for (const std::size_t axis : {1, 2})
         if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
-    // Pairs beside each other are sorted faster than elements whose boxes are far apart in memory.
-    std::vector<std::pair<double, std::uint32_t>> by_centre(range.end - range.first);
-    for (std::size_t k = range.first; k < range.end; ++k)
-        by_centre[k - range.first] = {centre(boxes[order[k]], longest), order[k]};
+    return longest;
+}
+
+/// Splits a range of elements along the longest side of what their centres cover. The first part gets a power of two of
+/// full tiles, so that 16 consecutive tiles are whole parts.
+std::array<Range, 2> split(std::vector<Entry>& entries, const Range& range)
+{
+    const auto begin = entries.begin() + std::ptrdiff_t(range.first), end = entries.begin() + std::ptrdiff_t(range.end);
+    const std::size_t axis = longest_axis({begin, end});
     const std::size_t middle = range.first + std::bit_ceil(range.tiles()) / 2 * TileBoxes::most;
-    std::nth_element(by_centre.begin(), by_centre.begin() + std::ptrdiff_t(middle - range.first), by_centre.end());
-    for (std::size_t k = range.first; k < range.end; ++k) order[k] = by_centre[k - range.first].second;
+    std::nth_element(begin, entries.begin() + std::ptrdiff_t(middle), end, [axis](const Entry& a, const Entry& b) {
+        return a.centre[axis] < b.centre[axis] || (a.centre[axis] == b.centre[axis] && a.element < b.element);
+    });
     return {Range{range.first, middle}, Range{middle, range.end}};
 }
 
@@ -71,12 +79,19 @@ TileTree::TileTree(std::vector<ElementBox> boxes) : boxes_(std::move(boxes))
 std::vector<std::uint32_t> packed_order(const std::vector<ElementBox>& boxes, std::vector<std::uint32_t> elements,
                                         int threads)
 {
+    std::vector<Entry> entries(elements.size());
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+        const ElementBox& box = boxes[elements[k]];
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            entries[k].centre[axis] = double(box.min[axis]) + double(box.max[axis]);
+        entries[k].element = elements[k];
+    }
     std::vector<Range> ranges{{0, elements.size()}};
     while (std::any_of(ranges.begin(), ranges.end(), [](const Range& range) { return range.tiles() > 1; })) {
         std::vector<std::array<Range, 2>> halves(ranges.size());
         parallel_for(ranges.size(), threads, {}, [&](std::size_t r) {
             const Range& range = ranges[r];
-            halves[r] = range.tiles() > 1 ? split(boxes, elements, range)
+            halves[r] = range.tiles() > 1 ? split(entries, range)
                                           : std::array<Range, 2>{range, Range{range.end, range.end}};
         });
         ranges.clear();
@@ -84,8 +99,11 @@ std::vector<std::uint32_t> packed_order(const std::vector<ElementBox>& boxes, st
             for (const Range& range : pair)
                 if (range.first < range.end) ranges.push_back(range);
     }
-    for (const Range& range : ranges)
-        std::sort(elements.begin() + std::ptrdiff_t(range.first), elements.begin() + std::ptrdiff_t(range.end));
+    parallel_for(ranges.size(), threads, {}, [&](std::size_t r) {
+        const auto [first, end] = ranges[r];
+        for (std::size_t k = first; k < end; ++k) elements[k] = entries[k].element;
+        std::sort(elements.begin() + std::ptrdiff_t(first), elements.begin() + std::ptrdiff_t(end));
+    });
     return elements;
 }
 

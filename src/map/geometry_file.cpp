@@ -9,7 +9,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr TiledFormat geometry_format{"SPAWNGEO", 3, 2};
+constexpr TiledFormat geometry_format{"SPAWNGEO", 4, 2};
 
 std::string written_head(const Geometry::Impl& geometry)
 {
@@ -33,6 +33,7 @@ std::string written_head(const Geometry::Impl& geometry)
         for (const std::uint32_t n : {part.solid_pieces, part.sheet_pieces, part.open_edges, part.triangles})
             out.put(n);
     }
+    out.put_array(geometry.part_hashes);
     return out.take();
 }
 
@@ -88,9 +89,11 @@ Geometry open_geometry(const std::filesystem::path& file, const std::string& hea
         for (std::size_t tree = 0; version > 2 && tree < levels.size(); ++tree)
             trees.emplace_back(head.get_array<ElementBox>());
         read_parts(head, *impl);
+        if (version > 3) impl->part_hashes = head.get_array<std::uint64_t>();
         return levels;
     });
     if (file_version == 2) return of_version_2(tiles, *impl);
+    if (file_version > 3 && impl->part_hashes.size() != impl->parts.size()) tiles.fail_inconsistent();
     for (std::size_t tree = 0; tree < trees.size(); ++tree) {
         const std::vector<TileEntry>& entries = tiles.levels()[tree].tiles;
         const auto is_empty = [](const TileEntry& tile) { return tile.size == 0; };

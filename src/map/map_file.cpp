@@ -59,10 +59,15 @@ std::vector<Floor> floors_of(const Map& map) { return map.floors ? *map.floors :
 OccupancyTree read_occupancy(const Map& map)
 {
     if (map.folder.empty()) return build_occupancy(map.geometry, map.bounds, map.occupancy_resolution);
-    const MapYaml yaml = read_map_yaml(map.folder);
-    check_size(map.folder, listed(yaml, "occupancy.bt"));
-    check_checksum(map.folder, listed(yaml, "occupancy.bt"));
+    check_listed(map.folder, "occupancy.bt");
     return read_occupancy(map.folder / "occupancy.bt");
+}
+
+void check_listed(const fs::path& folder, const std::string& file)
+{
+    const MapYaml yaml = read_map_yaml(folder);
+    check_size(folder, listed(yaml, file));
+    check_checksum(folder, listed(yaml, file));
 }
 
 void verify_map(const fs::path& folder)

@@ -12,6 +12,7 @@
 #include <spawnfield/output_file.h>
 
 #include <fcl/config.h>
+#include <libdeflate.h>
 #include <octomap/octomap_types.h>
 #include <opencv2/core/version.hpp>
 
@@ -46,8 +47,12 @@ std::string list_of(std::initializer_list<double> values)
 
 std::string libraries()
 {
-    return "{assimp: \"" + mesh_reader_version() + "\", fcl: \"" FCL_VERSION "\", opencv: \"" CV_VERSION "\"}";
+    return "{assimp: \"" + mesh_reader_version() +
+           "\", fcl: \"" FCL_VERSION "\", libdeflate: \"" LIBDEFLATE_VERSION_STRING "\", opencv: \"" CV_VERSION "\"}";
 }
+
+/// Returns the lines with the versions of the program and of the libraries whose results a bake contains.
+std::string program_lines() { return "program: {spawnfield: \"" + version() + "\"}\nlibraries: " + libraries() + "\n"; }
 
 /// Returns a line with the numbers of triangles and primitives for each label.
 std::string label_counts(const LabelCounts& counts)
@@ -129,6 +134,12 @@ ZRange read_z(const YamlMap& map, const std::string& key)
     return z;
 }
 
+std::pair<double, double> read_heightmap_z(const YamlMap& heightmap)
+{
+    const ZRange z = read_z(heightmap, "z");
+    return {z.low, z.high};
+}
+
 std::string floor_lines(const std::vector<Floor>& floors)
 {
     if (floors.empty()) return " []\n";
@@ -204,8 +215,7 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
     const GridFrame& frame = terrain.frame;
     std::string text = "format: " + format_prefix + std::to_string(map_format_version) + "\n";
     text += "name: " + quoted(map.name) + "\n";
-    text += "program: {spawnfield: \"" + version() + "\"}\n";
-    text += "libraries: " + libraries() + "\n";
+    text += program_lines();
     text += "scene: {file: " + quoted(map.scene_file) + ", xxh64: \"" + map.scene_hash + "\"}\n";
     text += "# metres, x forward, y left, z up\n";
     text += "bounds: {min: " + list_of({map.bounds.min.x(), map.bounds.min.y(), map.bounds.min.z()}) +
@@ -265,6 +275,7 @@ MapYaml read_map_yaml(const fs::path& folder)
     out.map.scene_hash = root.map("scene").text("xxh64");
     out.frame = read_frame(root);
     for (const YAML::Node& page : root.list("terrain")) out.pages.push_back(page.Scalar());
+    out.heightmap_z = read_heightmap_z(root.map("heightmap"));
     const YamlMap files = root.map("files");
     for (const std::string& name : files.keys()) {
         const YamlMap entry = files.map(name);
@@ -272,6 +283,11 @@ MapYaml read_map_yaml(const fs::path& folder)
             {name, entry.text("xxh64"), entry.text("head_xxh64", ""), std::uintmax_t(entry.finite("bytes"))});
     }
     return out;
+}
+
+bool is_of_this_program(const fs::path& folder)
+{
+    return read_file(folder / "map.yaml").find("\n" + program_lines()) != std::string::npos;
 }
 
 }  // namespace spawnfield

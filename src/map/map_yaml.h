@@ -17,8 +17,15 @@ struct MapYaml {
     GridFrame frame;
     std::vector<std::string> pages;  ///< of terrain.tiff
     std::vector<ListedFile> files;
+    std::pair<double, double> heightmap_z;  ///< heights of the pixels 0 and 65535 of heightmap.png, m
 };
 /// Reads map.yaml of a map folder. Throws FileError.
 MapYaml read_map_yaml(const std::filesystem::path& folder);
+
+/// Returns whether this version of the program baked the map, with these versions of its libraries. Throws FileError.
+bool is_of_this_program(const std::filesystem::path& folder);
+
+/// Verifies the size and the checksum of one of the map's files. Throws FileError if they are not those of map.yaml.
+void check_listed(const std::filesystem::path& folder, const std::string& file);
 
 }  // namespace spawnfield

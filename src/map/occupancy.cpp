@@ -3,7 +3,9 @@
 #include "column/cell_clip.h"
 #include "column/uniform_column.h"
 #include "geometry/geometry_impl.h"
+#include "map/changed_occupancy.h"
 #include "map/occupancy_impl.h"
+#include "map/occupancy_towers.h"
 #include "scene/octomap_file.h"
 
 #include <spawnfield/error.h>
@@ -18,9 +20,6 @@
 
 namespace spawnfield {
 namespace {
-
-constexpr int key_offset = 32768;  // OctoMap's key of the voxel that begins at 0
-constexpr int depth = 16;          // levels of an OcTree
 
 struct VoxelBox {
     std::array<int, 3> low, high;  ///< inclusive
@@ -42,28 +41,6 @@ VoxelBox voxels_in(const Bounds& bounds, double resolution)
         box.high[axis] = int(high);
     }
     return box;
-}
-
-/// Two-bit state of a child in a .bt file.
-enum class Content : std::uint8_t { Unknown = 0, Free = 1, Occupied = 2, Mixed = 3 };
-
-/// A part of a column of cubes: it begins where the stretch before it ends, and ends before cube `end`.
-struct Stretch {
-    int end;
-    Content content;
-};
-
-using Profile = std::vector<Stretch>;
-
-/// Extends a profile by cubes of this content up to cube `end`. Does nothing if the profile already reaches that far.
-void append(Profile& profile, int end, Content content)
-{
-    const int from = profile.empty() ? 0 : profile.back().end;
-    if (end <= from) return;
-    if (!profile.empty() && profile.back().content == content)
-        profile.back().end = end;
-    else
-        profile.push_back({end, content});
 }
 
 /// Columns of cubes with a side of 2^level voxels, over a rectangle. All cubes beyond the rectangle are unknown.
@@ -206,13 +183,6 @@ Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double re
     return out;
 }
 
-/// A tree in the form of a .bt file: for each inner node two bits for each of its children, then those children that
-/// are inner nodes themselves.
-struct TreeBytes {
-    std::string nodes;
-    std::size_t inner = 1, leaves = 0;  ///< numbers of nodes; the root is inner
-};
-
 /// Writes the nodes of a Mixed cube. `levels` ends with the profiles of the cube's level. A Mixed cube of levels[0] is
 /// written by under(x, y, z, out) instead.
 template <class Under>
@@ -239,17 +209,9 @@ void write_cube(std::span<const Profiles> levels, int x, int y, int z, const Und
                        2 * z + (child >> 2), under, out);
 }
 
-constexpr int block_level = 7;  // towers consist of cubes with a side of 2^block_level voxels
-
-/// Cubes of block_level, one above the other.
-struct Tower {
-    Profile profile;
-    std::map<int, TreeBytes> cubes;  ///< the nodes of Mixed cubes, by their z
-};
-
 Tower build_tower(const Geometry& geometry, const VoxelBox& box, double resolution, int x, int y)
 {
-    constexpr int side = 1 << block_level;
+    constexpr int side = 1 << tower_level;
     // The voxels of the box that lie in a cube: the first one, counted from the box's lowest, and their number.
     const auto part = [&](int axis, int cube) {
         const int low = std::max(0, cube * side - key_offset - box.low[std::size_t(axis)]);
@@ -260,7 +222,7 @@ Tower build_tower(const Geometry& geometry, const VoxelBox& box, double resoluti
     const auto [i0, cols] = part(0, x);
     const auto [j0, rows] = part(1, y);
     std::vector<Profiles> levels{voxel_profiles(geometry, box, resolution, i0, j0, cols, rows)};
-    while (levels.back().level() < block_level) levels.push_back(levels.back().halved());
+    while (levels.back().level() < tower_level) levels.push_back(levels.back().halved());
     Tower tower;
     int z = 0;
     for (const Stretch& stretch : levels.back().stretches_at(x, y)) {
@@ -276,33 +238,59 @@ Tower build_tower(const Geometry& geometry, const VoxelBox& box, double resoluti
     return tower;
 }
 
-TreeBytes build_tree(const Geometry& geometry, const Bounds& bounds, double resolution, int threads,
-                     const Progress& progress)
+/// The voxels of a map, and the towers that contain them.
+struct VoxelGrid {
+    VoxelBox box;
+    TowerGrid towers;
+};
+
+VoxelGrid voxel_grid(const Bounds& bounds, double resolution)
 {
     if (!(resolution > 0) || !std::isfinite(resolution))
         throw ArgumentError("build_occupancy", "resolution", resolution, "> 0 m");
     const VoxelBox box = voxels_in(bounds, resolution);
-    const auto cube_of = [&](int voxel) { return (voxel + key_offset) >> block_level; };
+    const auto cube_of = [&](int voxel) { return (voxel + key_offset) >> tower_level; };
     const int x0 = cube_of(box.low[0]), y0 = cube_of(box.low[1]);
-    const int cols = cube_of(box.high[0]) - x0 + 1, rows = cube_of(box.high[1]) - y0 + 1;
-    std::vector<Tower> towers(std::size_t(cols) * std::size_t(rows));
+    return {box, {x0, y0, cube_of(box.high[0]) - x0 + 1, cube_of(box.high[1]) - y0 + 1}};
+}
+
+/// Makes those towers for which must_make(tower) is true.
+template <class MustMake>
+void make_towers(const Geometry& geometry, const VoxelGrid& grid, double resolution, int threads,
+                 const Progress& progress, const MustMake& must_make, std::vector<Tower>& towers)
+{
     parallel_for(towers.size(), threads, progress, [&](std::size_t t) {
-        towers[t] = build_tower(geometry, box, resolution, x0 + int(t) % cols, y0 + int(t) / cols);
+        const int x = grid.towers.x0 + int(t) % grid.towers.cols, y = grid.towers.y0 + int(t) / grid.towers.cols;
+        if (must_make(x, y)) towers[t] = build_tower(geometry, grid.box, resolution, x, y);
     });
-    std::vector<Profiles> levels{Profiles(block_level, x0, y0, cols, rows)};
+}
+
+TreeBytes tree_of(const std::vector<Tower>& towers, const TowerGrid& grid)
+{
+    std::vector<Profiles> levels{Profiles(tower_level, grid.x0, grid.y0, grid.cols, grid.rows)};
     for (const Tower& tower : towers) levels.back().add(tower.profile);
-    while (levels.back().level() < depth) levels.push_back(levels.back().halved());
+    while (levels.back().level() < tree_depth) levels.push_back(levels.back().halved());
     TreeBytes out;
     write_cube(
         std::span<const Profiles>(levels), 0, 0, 0,
         [&](int x, int y, int z, TreeBytes& tree) {
-            const TreeBytes& cube = towers[std::size_t(y - y0) * std::size_t(cols) + std::size_t(x - x0)].cubes.at(z);
+            const TreeBytes& cube = towers[grid.index(x, y)].cubes.at(z);
             tree.nodes += cube.nodes;
             tree.inner += cube.inner;
             tree.leaves += cube.leaves;
         },
         out);
     return out;
+}
+
+TreeBytes build_tree(const Geometry& geometry, const Bounds& bounds, double resolution, int threads,
+                     const Progress& progress)
+{
+    const VoxelGrid grid = voxel_grid(bounds, resolution);
+    std::vector<Tower> towers(grid.towers.count());
+    make_towers(
+        geometry, grid, resolution, threads, progress, [](int, int) { return true; }, towers);
+    return tree_of(towers, grid.towers);
 }
 
 /// Returns the bytes of a .bt file. Its header is written here because octomap's writeBinary prints to standard error.
@@ -348,12 +336,40 @@ OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, do
     return OccupancyTree(std::move(impl));
 }
 
+namespace {
+
+/// Returns the number of leaves.
+std::size_t write_tree(const std::filesystem::path& file, double resolution, const TreeBytes& tree)
+{
+    write_file_atomically(file, bt_file(resolution, tree.inner + tree.leaves, tree.nodes));
+    return tree.leaves;
+}
+
+}  // namespace
+
 std::size_t write_occupancy(const std::filesystem::path& file, const Geometry& geometry, const Bounds& bounds,
                             double resolution, int threads, const Progress& progress)
 {
-    const TreeBytes tree = build_tree(geometry, bounds, resolution, threads, progress);
-    write_file_atomically(file, bt_file(resolution, tree.inner + tree.leaves, tree.nodes));
-    return tree.leaves;
+    return write_tree(file, resolution, build_tree(geometry, bounds, resolution, threads, progress));
+}
+
+std::size_t write_changed_occupancy(const std::filesystem::path& file, const std::filesystem::path& old_file,
+                                    const Geometry& geometry, const Bounds& bounds, double resolution,
+                                    std::span<const ElementBox> boxes, int threads)
+{
+    const VoxelGrid grid = voxel_grid(bounds, resolution);
+    std::vector<Tower> towers = read_towers(old_file, grid.towers);
+    const double side = resolution * (1 << tower_level);
+    const auto may_change = [&](int x, int y) {
+        const double low_x = (double(x << tower_level) - key_offset) * resolution - resolution,
+                     low_y = (double(y << tower_level) - key_offset) * resolution - resolution,
+                     high_x = low_x + side + 2 * resolution, high_y = low_y + side + 2 * resolution;
+        return std::any_of(boxes.begin(), boxes.end(), [&](const ElementBox& box) {
+            return box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y;
+        });
+    };
+    make_towers(geometry, grid, resolution, threads, {}, may_change, towers);
+    return write_tree(file, resolution, tree_of(towers, grid.towers));
 }
 
 OccupancyTree read_occupancy(const std::filesystem::path& file)

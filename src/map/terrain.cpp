@@ -284,6 +284,12 @@ int changed_layers(const TerrainMap& base, const Geometry& geometry, std::span<c
     return int(*std::max_element(layers.begin(), layers.end()));
 }
 
+bool has_same_tiles(const TerrainMap& a, const TerrainMap& b, const std::string& page)
+{
+    const TerrainMap::Page *const in_a = a.find(page), *const in_b = b.find(page);
+    return in_a != nullptr && in_b != nullptr && in_a->tiles == in_b->tiles;
+}
+
 int count_layers(const TerrainMap& terrain)
 {
     const TerrainMap::Page* const top = terrain.find("height.0");

@@ -4,6 +4,7 @@
 #include "base/yaml_map.h"
 #include "scene/heightmap.h"
 #include "scene/label_rules.h"
+#include "scene/moving_part.h"
 #include "scene/octomap_part.h"
 #include "scene/pieces.h"
 
@@ -107,11 +108,65 @@ struct SceneFile {
     }
 };
 
+/// Reads the poses of `path:`. Times ascend, and a turn has a clear direction.
+TimedPath read_path(const YamlMap& part)
+{
+    TimedPath out;
+    for (const YAML::Node& node : part.list("path")) {
+        const YamlMap pose(node, part.file(), part.place() + ": path: pose " + std::to_string(out.size() + 1));
+        pose.only({"time", "xyz", "rpy", "rpy_deg"});
+        const TimedPose next{pose.finite("time"), pose.pose()};
+        if (!out.empty() && next.time <= out.back().time)
+            pose.fail("time", "is " + number(next.time) + " s, needs to be later than the pose before (" +
+                                  number(out.back().time) + " s)");
+        if (!out.empty() && is_half_turn(out.back().pose, next.pose))
+            pose.fail("is turned by half a turn, so the direction of the turn is not clear; add a pose between");
+        out.push_back(next);
+    }
+    if (out.size() < 2) part.fail("path", "needs at least 2 poses: [{time: 0, xyz: [0, 0, 0]}, …]");
+    return out;
+}
+
+/// Reads a part that moves. It becomes the space that it sweeps.
+void read_moving_part(const YamlMap& map, const std::string& kind, SceneFile& file, Scene& scene)
+{
+    if (kind == "mesh")
+        map.only({"name", "label", "path", "mesh", "up", "scale", "solid"});
+    else if (kind == "box" || kind == "sphere" || kind == "cylinder" || kind == "capsule")
+        map.only({"name", "label", "path", kind.c_str()});
+    else
+        map.fail("path", "is given for a " + kind + "; only box, sphere, cylinder, capsule and mesh can move");
+    const std::string name = map.text("name");
+    file.add({name});
+    const Label label = label_by_name(name, file.options.labels, read_label(map, "obstacle"));
+    const TimedPath path = read_path(map);
+    const std::uint32_t part = add_part(scene, name, kind, label);
+    if (label == Label::Ignore) return;
+    if (label != Label::Obstacle)
+        map.fail("label", std::string("is ") + to_string(label) + ", but a part that moves is always an obstacle");
+    const TimeWindow& window = file.options.time;
+    scene.has_moving_parts = true;
+    if (window == TimeWindow{})
+        scene.notices.push_back(map.file() + ": " + map.place() + " moves; all places on its path count");
+    if (kind != "mesh") return append_swept(scene, part, read_shape(map, kind), path, window);
+    Scene still;
+    add_part(still, name, kind, label);
+    MeshOptions mesh = read_mesh_options(map, file.options);
+    mesh.rules.clear();
+    mesh.auto_slope.reset();
+    in_part(map, "mesh", [&](const auto& from) { append_mesh(still, 0, *file.meshes.read(file.folder / from), mesh); });
+    append_swept(scene, part, still, path, window);
+    scene.parts[part].open_edges = still.parts[0].open_edges;
+    scene.notices.insert(scene.notices.end(), still.notices.begin(), still.notices.end());
+}
+
 void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
 {
-    const std::string kind = only_key(
-        map, {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap", "octomap"},
-        {"name", "label", "xyz", "rpy", "rpy_deg", "up", "scale", "solid", "sides", "labels", "auto_label", "unknown"});
+    const std::string kind = only_key(map,
+                                      {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap", "octomap"},
+                                      {"name", "label", "path", "xyz", "rpy", "rpy_deg", "up", "scale", "solid",
+                                       "sides", "labels", "auto_label", "unknown"});
+    if (map.has("path")) return read_moving_part(map, kind, file, scene);
     if (kind == "mesh")
         map.only({"name", "label", "xyz", "rpy", "rpy_deg", "mesh", "up", "scale", "solid", "sides", "labels",
                   "auto_label"});

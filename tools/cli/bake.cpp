@@ -14,6 +14,7 @@ namespace {
 
 struct BakeArgs : CommonArgs, SceneArgs, ModelPathArgs {
     std::string scene, out, bounds, z;
+    std::vector<std::string> update;
     double resolution = 0, occupancy_resolution = 0;
     bool allow_no_terrain = false;
 };
@@ -45,7 +46,9 @@ Ending run_bake(const BakeArgs& args, const CLI::App& command, Summary& summary)
     Scene scene = load_scene(args.scene, reading);
     notices(args, scene.notices);
     summary.lap("load");
-    const BakeReport report = bake(std::move(scene), scene_file_of(args.scene), args.out, options);
+    const BakeReport report = args.update.empty() ? bake(std::move(scene), scene_file_of(args.scene), args.out, options)
+                                                  : update_map(std::move(scene), scene_file_of(args.scene), args.out,
+                                                               args.update, options);
     for (const std::string& text : report.notices) notice(args, text);
     summary.lap("bake");
     summary.more_stages = report.seconds;
@@ -78,10 +81,19 @@ void add_bake(CLI::App& app, ChosenCommand& chosen)
                        "not ground, and poses beyond them are outside");
     command.add_option("--z", args->z,
                        "LOW:HIGH in m: only z limits; x and y are the scene's (5: or :8 for one limit)");
+    command
+        .add_option("--update", args->update,
+                    "Bake only the region of these parts again, which were moved, changed, added or removed since MAP "
+                    "was baked: PART,... (globs; '*' finds all changes). Gives the same files as a full bake")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(not_empty());
     add_scene_options(command, *args);
     command.add_flag("--allow-no-terrain", args->allow_no_terrain, "Accept a scene without terrain");
     add_common(command, *args);
-    command.footer("Example:\n  spawnfield bake maps/training/scene.yaml -o /tmp/training");
+    command.footer(
+        "Example:\n  spawnfield bake maps/training/scene.yaml -o /tmp/training\n"
+        "  spawnfield bake maps/training/scene.yaml -o /tmp/training --update 'cube*,thin_wall'");
     set_work(command, args, chosen, run_bake);
 }
 

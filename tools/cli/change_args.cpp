@@ -86,22 +86,42 @@ Map with_robot(const CommonArgs& common, const PlacedRobot& placed, const RobotO
     return with_parts(map, obstacle, common.threads);
 }
 
-Map with_scene(const CommonArgs& common, const SceneOptions& options, const std::string& file, const Map& map)
+/// Reads a scene of --with.
+Scene read_extra(const CommonArgs& common, const SceneOptions& options, const std::string& file)
 {
     Scene extra = load_scene(file, options);
     notices(common, extra.notices);
+    return extra;
+}
+
+/// `when` is the text of --time in the name of the change; empty if the scene has no moving parts.
+Map with_scene(const CommonArgs& common, Scene extra, const std::string& file, const std::string& when, const Map& map)
+{
     if (extra.origin)
         notice(common,
                file + ": its survey coordinates are not used; its parts are where the file's own frame has them");
     for (const std::string& part : parts_off_map(extra, map))
         notice(common, file + ": part \"" + part + "\" lies off the map, which is " + to_string(map.bounds, 2) +
                            "; only robots that reach over the map's edge can touch it");
-    extra.name = fs::path(file).filename().string();
+    extra.name = fs::path(file).filename().string() + when;
     try {
         return with_parts(map, extra, common.threads);
     } catch (const ArgumentError& error) {
         throw FileError(file, error.message());
     }
+}
+
+/// Reads --time: LOW:HIGH in s, or only one of the two.
+TimeWindow parse_time(const std::string& text)
+{
+    const std::size_t colon = text.find(':');
+    if (colon == std::string::npos || text.size() == 1)
+        throw ArgumentError("--time is \"" + text + "\", needs LOW:HIGH in s, for example 2:5 or 2:");
+    TimeWindow out;
+    if (colon > 0) out.from = parse_numbers("--time", text.substr(0, colon))[0];
+    if (colon + 1 < text.size()) out.to = parse_numbers("--time", text.substr(colon + 1))[0];
+    if (!(out.from <= out.to)) throw ArgumentError("--time is \"" + text + "\"; give the earlier time first");
+    return out;
 }
 
 }  // namespace
@@ -121,6 +141,11 @@ void add_changes(CLI::App& command, ChangeArgs& args)
                     "(repeatable; `info MAP` lists the names)")
         ->allow_extra_args(false)
         ->check(not_empty());
+    command
+        .add_option("--time", args.time,
+                    "LOW:HIGH in s: parts of --with that have a path count with all their places in this time (2: or "
+                    ":5 for one limit; default: with their whole path)")
+        ->check(not_empty());
 }
 
 Map changed_map(const CommonArgs& common, const ChangeArgs& args, const std::vector<std::string>& model_paths, Map map)
@@ -131,11 +156,23 @@ Map changed_map(const CommonArgs& common, const ChangeArgs& args, const std::vec
         throw ArgumentError(std::string("--without ") + error.message());
     }
     const std::vector<fs::path> folders(model_paths.begin(), model_paths.end());
+    const TimeWindow time = args.time.empty() ? TimeWindow{} : parse_time(args.time);
+    bool has_moving_parts = false;
     for (const std::string& text : args.with) {
         const std::optional<PlacedRobot> robot = parse_robot(common, text);
-        map = robot ? with_robot(common, *robot, {.model_paths = folders}, text, map)
-                    : with_scene(common, {.model_paths = folders, .bounds = map.bounds}, text, map);
+        if (robot) {
+            map = with_robot(common, *robot, {.model_paths = folders}, text, map);
+            continue;
+        }
+        Scene extra = read_extra(common, {.model_paths = folders, .bounds = map.bounds, .time = time}, text);
+        has_moving_parts |= extra.has_moving_parts;
+        const std::string when = extra.has_moving_parts && !args.time.empty() ? " at " + args.time + " s" : "";
+        map = with_scene(common, std::move(extra), text, when, map);
     }
+    if (!args.time.empty() && !has_moving_parts)
+        throw ArgumentError("--time is \"" + args.time +
+                            "\", but no part of --with has a path; add one (docs/changing-worlds.md), or leave --time "
+                            "out");
     const LabelCount& terrain = map.geometry.labels()[std::size_t(Label::Terrain)];
     if (args.has_changes() && terrain.triangles + terrain.primitives == 0)
         notice(common, "the changed map has no terrain, so no robot can stand anywhere");

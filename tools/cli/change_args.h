@@ -12,13 +12,14 @@ namespace spawnfield::cli {
 /// Changes of the map for one query: parts that are removed, then scenes and robots that are added.
 struct ChangeArgs {
     std::vector<std::string> with, without;
+    std::string time;  ///< --time: LOW:HIGH in s; empty: all time
 
-    bool has_changes() const { return !with.empty() || !without.empty(); }
+    bool has_changes() const { return !with.empty() || !without.empty() || !time.empty(); }
 };
 
-/// Adds --with and --without below the heading "Changed world".
+/// Adds --with, --without and --time below the heading "Changed world".
 void add_changes(CLI::App& command, ChangeArgs& args);
-inline const std::vector<std::string> change_option_names{"--with", "--without"};
+inline const std::vector<std::string> change_option_names{"--with", "--without", "--time"};
 
 /// Returns the map with all changes. Prints the notices of the files, and those about parts off the map and about a map
 /// without terrain. Throws ArgumentError, FileError.
