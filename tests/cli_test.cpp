@@ -623,6 +623,22 @@ TEST_CASE("a link is written through, and stays a link")
     CHECK(std::distance(fs::directory_iterator(arena / "far"), {}) == 1);
 }
 
+TEST_CASE("Ctrl-C ends a search for spawns with status 130, and writes those that were found")
+{
+    const Arena arena;
+    const std::string wanted = " -n 100000000 --yaw random --seed 3 -o ";
+    const ProgramRun run = interrupt_program(arena, "sample map" + wanted + "part.csv --stance level" + husky);
+    CHECK(run.status == 130);
+    const std::string part = bytes_of(arena / "part.csv");
+    const long found = lines(part) - 1;
+    CHECK(found > 0);
+    CHECK_THAT(run.err, Catch::Matchers::EndsWith("spawnfield: interrupted: " + std::to_string(found) +
+                                                  " spawns of 100000000 were found and written\n"));
+    const std::string whole =
+        arena("sample map --yaw random --seed 3 --stance level -n " + std::to_string(found) + husky).out;
+    CHECK(part == whole);
+}
+
 TEST_CASE("Ctrl-C ends long work with status 130 and does not change old files")
 {
     const Arena arena;

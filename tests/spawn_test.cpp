@@ -9,6 +9,7 @@
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>
 
+#include <atomic>
 #include <numbers>
 #include <set>
 
@@ -370,6 +371,50 @@ TEST_CASE("as many spawns as fit are found on request; one more is too many")
     CHECK_FALSE(exact.is_full);
     ++options.count;
     CHECK(spawns_csv(sample(judge, options)) == spawns_csv(all));
+}
+
+TEST_CASE("a query that is stopped returns the first spawns of the whole list")
+{
+    const TestMap map = training_map();
+    const Judge judge(map, husky());
+    const auto is_start_of = [](const SpawnList& part, const SpawnList& all) {
+        REQUIRE(part.spawns.size() <= all.spawns.size());
+        for (std::size_t i = 0; i < part.spawns.size(); ++i)
+            if (part.spawns[i].position != all.spawns[i].position || part.spawns[i].yaw != all.spawns[i].yaw)
+                return false;
+        return true;
+    };
+    for (const Stance stance : {Stance::Level, Stance::Settled}) {
+        SampleOptions options = sample_options(100000, 1.2);  // more than fit, so that level ones are also filled
+        options.stance = stance;
+        if (stance == Stance::Settled) {
+            options.count = 3000;
+            options.min_distance = 0;
+            options.offset.reset();
+        }
+        const SpawnList all = sample(judge, options);
+        CHECK_FALSE(all.is_stopped);
+        std::set<std::size_t> sizes;
+        for (const long asked : {0L, 1L, 1000L, 2000L, 5000L, 20000L}) {
+            std::atomic<long> left{asked};
+            options.stop = [&] { return left.fetch_sub(1) <= 0; };
+            options.threads = int(asked % 3 + 1);
+            const SpawnList part = sample(judge, options);
+            CHECK(is_start_of(part, all));
+            CHECK(part.is_stopped == (part.spawns.size() < options.count && left < 0));
+            CHECK_FALSE((part.is_stopped && part.is_full));
+            sizes.insert(part.spawns.size());
+        }
+        CHECK(sizes.contains(0));
+        CHECK(sizes.size() >= 3);
+    }
+    SearchOptions options{.count = 1000, .min_distance = 0.5, .seed = 4};
+    const SpawnList all = search(judge, options);
+    std::atomic<long> left{30000};
+    options.stop = [&] { return left.fetch_sub(1) <= 0; };
+    const SpawnList part = search(judge, options);
+    CHECK(part.is_stopped);
+    CHECK(is_start_of(part, all));
 }
 
 TEST_CASE("filling a region gives the same bytes with any number of threads, and exhaustively")

@@ -168,6 +168,9 @@ struct SpawnList {
     /// Only counted by sample(): judged positions on a layer that has another of the chosen layers at most
     /// double_ground above it, likely the same ground twice.
     std::uint64_t on_double_ground = 0;
+    /// There are fewer than `count` spawns because the options' `stop` returned true. They are the first ones of the
+    /// whole list, up to a draw of the last batch.
+    bool is_stopped = false;
     /// Only set by sample(): there are fewer than `count` spawns, and it is proven that no other spawn fits. With place
     /// rules, this is proven only if no place can comply with them.
     bool is_full = false;
@@ -209,6 +212,7 @@ struct SearchOptions {
     std::uint64_t max_failures = 100000;
     int threads = 0;  ///< 0: all cores; results are the same for any number
     Progress progress = {};
+    StopRequest stop = {};  ///< see SpawnList::is_stopped
 };
 
 /// Returns spawns from a random search (Ropelato). Draws are uniform in a box. Each draw must keep min_distance to all
@@ -242,6 +246,7 @@ struct SampleOptions {
     std::vector<AvoidedPoints> avoid = {};  ///< the same as SearchOptions::avoid
     int threads = 0;                        ///< 0: all cores; results are the same for any number
     Progress progress = {};
+    StopRequest stop = {};  ///< see SpawnList::is_stopped
 };
 
 /// Returns valid poses that are distributed uniformly by horizontal area over the feasible region of all chosen layers.

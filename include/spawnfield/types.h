@@ -130,6 +130,9 @@ SPAWNFIELD_API const char* to_string(Verdict verdict);  ///< as in CSV files: "o
 /// Called from time to time during long work, with the share that is done (0 .. 1). The calls may come from any thread,
 /// but only one at a time. May throw to stop the work.
 using Progress = std::function<void(double)>;
+/// Is asked by several threads now and then. True: a query ends early, with what it has found. Once it has returned
+/// true, it must always do so.
+using StopRequest = std::function<bool()>;
 
 SPAWNFIELD_API std::string version();  ///< "0.2.0"
 

@@ -143,9 +143,9 @@ public:
             return double(out.spawns.size() - std::exchange(before, out.spawns.size())) >
                    least_share * double(blind_window);
         });
-        if (overfull_ || out.spawns.size() == options_.count) return !overfull_;
+        if (is_done(out)) return !overfull_;
         if (is_settled_)
-            out.undecided_area = Cells(within(box_, shared_.map.bounds), options_.min_distance).region_area();
+            out.undecided_area = region_area();
         else
             fill(out);
         return !overfull_;
@@ -160,7 +160,7 @@ private:
         draw(
             out, std::numeric_limits<std::uint64_t>::max(), [&](Draw& from) { return place_cells_->draw(from); },
             [](std::uint64_t, std::uint64_t failures) { return failures < place_patience; });
-        if (out.spawns.size() < options_.count) out.undecided_area = place_cells_->area();
+        if (!is_done(out)) out.undecided_area = place_cells_->area();
         return !overfull_;
     }
 
@@ -208,7 +208,7 @@ private:
             const double x = from.uniform(cell.low_x, cell.high_x), y = from.uniform(cell.low_y, cell.high_y);
             return Vec2(x, y);
         };
-        for (bool is_last = false;;) {
+        for (bool is_last = false; !is_done(out);) {
             proofs_made += cells.size();
             drop_closed(cells, proofs, out);
             if (is_last || cells.size() == 0) break;
@@ -216,7 +216,6 @@ private:
             std::size_t found = round;
             while (!is_done(out) && double(found) > fair_share * double(round))
                 found = draw(out, round, point, [](std::uint64_t, std::uint64_t) { return true; });
-            if (is_done(out)) return;
             const bool is_nearly_decided = cells.area() < next_to_nothing * cells.region_area();
             const std::size_t affordable = some_proofs / (is_nearly_decided ? 2 : 1) +
                                            proofs_per_point * (out.spawns.size() + avoided_.size());
@@ -226,11 +225,24 @@ private:
             else
                 is_last = double(found) < least_share * double(round) || proofs_made > affordable;
         }
+        if (is_done(out)) return;
         out.undecided_area = cells.area();
         out.is_full = cells.size() == 0;
     }
 
-    bool is_done(const SpawnList& out) const { return overfull_ || out.spawns.size() == options_.count; }
+    bool is_done(SpawnList& out) const
+    {
+        if (overfull_ || out.spawns.size() == options_.count) return true;
+        out.is_stopped = is_stopped(options_);
+        if (out.is_stopped) out.undecided_area = region_area();
+        return out.is_stopped;
+    }
+
+    double region_area() const
+    {
+        const Bounds box = within(box_, shared_.map.bounds);
+        return (box.max - box.min).head<2>().prod();
+    }
 
     /// Drops the cells in which, by proof, no further spawn fits.
     void drop_closed(Cells& cells, CellProofs& proofs, const SpawnList& out) const
@@ -240,6 +252,7 @@ private:
         std::vector<std::uint8_t> flags(cells.size());
         parallel_for((flags.size() + chunk - 1) / chunk, options_.threads, share_found(options_, out),
                      [&](std::size_t c) {
+                         if (is_stopped(options_)) return;
                          for (std::size_t i = c * chunk; i < std::min(flags.size(), (c + 1) * chunk); ++i) {
                              const Rect cell = cells.at(i);
                              flags[i] = proofs.is_closed(cell);

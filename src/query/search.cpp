@@ -129,6 +129,7 @@ public:
             failures = take(candidate, out) ? 0 : failures + 1;
             return out.spawns.size() < options_.count && failures < options_.max_failures;
         });
+        out.is_stopped = out.spawns.size() < options_.count && failures < options_.max_failures && is_stopped(options_);
         return out;
     }
 

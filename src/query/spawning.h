@@ -49,6 +49,7 @@ double draw_yaw(const Options& options, Draw& draw)
 
 /// The result of one draw. It has a verdict only if it was far enough from the points that were taken before its batch.
 struct Candidate {
+    bool is_missing = false;        ///< the work was stopped before this draw
     bool on_ground = false;         ///< the draw gave a pose; only set by sample()
     bool on_double_ground = false;  ///< as counted in SpawnList; only set by sample()
     bool off_area = false;
@@ -141,10 +142,17 @@ Progress share_found(const Options& options, const SpawnList& found)
     return [&](double) { options.progress(double(found.spawns.size()) / double(options.count)); };
 }
 
+template <class Options>
+bool is_stopped(const Options& options)
+{
+    return options.stop && options.stop();
+}
+
 /// Makes draws first, first + 1, … in batches. Several threads call look(index, judge), which returns a Candidate, for
 /// neighbours one after the other: place(index) returns x and y of a draw, m. Then take(candidate) is called for one
 /// draw after the other, in their order, until it returns false. batch_size(draws) returns the size of the next batch
-/// after so many draws; it changes nothing but the exact checks. Returns the number of the next draw.
+/// after so many draws; it changes nothing but the exact checks. Ends early if the options' `stop` returns true.
+/// Returns the number of the next draw.
 template <class Options, class BatchSize, class Place, class Look, class Take>
 std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, const Options& options,
                             const SpawnList& found, TakenPoints& taken, const BatchSize& batch_size, const Place& place,
@@ -165,9 +173,15 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
             PoseJudge judge(shared, options.yaw);
             if (is_sparse) judge.use_coarse_cells();
             const std::size_t end = std::min(batch.size(), (c + 1) * chunk);
-            for (std::size_t k = c * chunk; k < end; ++k) batch[order[k]] = look(next + order[k], judge);
+            for (std::size_t k = c * chunk; k < end; ++k) {
+                Candidate& candidate = batch[order[k]];
+                const bool is_late = is_stopped(options);
+                candidate = is_late ? Candidate{} : look(next + order[k], judge);
+                candidate.is_missing = is_late;
+            }
         });
         for (const Candidate& candidate : batch) {
+            if (candidate.is_missing) return next;
             ++next;
             if (!take(candidate)) return next;
         }

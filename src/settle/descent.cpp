@@ -18,10 +18,17 @@ constexpr double exact_turn = 1e-3;  // rad: after a turn of this size, the touc
 /// After turns that are shorter than this, a wall that stops the robot is where it was met. In shorter steps, no rest
 /// would be found before it, only the place of the wall more exactly.
 constexpr double turn_to_wall = 1e-7;  // rad
-constexpr int max_turns = 120;         // nearly all robots need less than 20; more are a cycle around a balance
+constexpr int max_turns = 300;  // nearly all robots need less than 20; more are needed to roll along a bent valley
 /// Where the mass is exactly above an edge between two ways to rest, the robot turns as if its centre of mass were this
 /// much farther back and to the right, m.
 const Vec3 preference(-1e-7, -0.5e-7, 0);
+
+/// The mass is at a lowest place if it would sink by less than this share of a turn, m/rad: as `preference` may do.
+constexpr double level_slope = 2e-7;
+
+/// Returns the share of a turn at which the mass is lowest, if it sinks by `sinks` during the whole turn instead of
+/// `expected`, because it sinks slower and slower: for a robot that rolls on round parts.
+double lowest_of_parabola(double expected, double sinks) { return expected / (2 * (expected - sinks)); }
 
 }  // namespace
 
@@ -108,6 +115,7 @@ Rest::State Settler::Descent::descend(double straight)
     balance_z_ = at_.z;
     limit_ = first_turn;
     is_stuck_ = false;
+    int level_turns = 0;  // in a row in which the mass did not sink, as around a lowest place
     std::optional<std::uint32_t> wall;
     for (int step = 0; step < max_turns; ++step) {
         if (at_.touches.empty() || tilts_too_far(at_.rotation)) {
@@ -134,12 +142,16 @@ Rest::State Settler::Descent::descend(double straight)
         const double sinks = at_.z - next_.z - drift_.dot(turn), expected = at_.z - expected_z(turn) - drift_.dot(turn);
         if (!next_.has_room || sinks < 0.25 * expected - tie) {
             wall = next_.has_room ? std::nullopt : next_.wall;
-            limit_ = turn.lpNorm<Eigen::Infinity>() / 4;
+            const bool is_slower = next_.has_room && expected > 0;
+            const double nearer = is_slower ? std::clamp(lowest_of_parabola(expected, sinks), 0.05, 0.25) : 0.25;
+            limit_ = nearer * turn.lpNorm<Eigen::Infinity>();
             if (wall && turn.norm() < turn_to_wall) break;
             continue;
         }
         wall.reset();
         std::swap(at_, next_);
+        level_turns = expected < std::min(4 * tie, level_slope * turn.norm()) ? level_turns + 1 : 0;
+        if (level_turns == 3) break;
         if (straight == 0 && is_to_kink && !at_.touches.empty()) land(turn);
     }
     at_.wall = wall;

@@ -10,7 +10,7 @@ namespace {
 
 /// Touches that are farther below the highest one than this cannot carry the robot after the next step, m: at most
 /// `most_seen` (of large robots, `large_seen` times the robot's size), and `seen_share` times the limit of the step and
-/// the robot's size.
+/// the robot's size; but those that may count for the margin are always seen.
 constexpr double large_seen = 0.3, seen_share = 4;
 
 double highest_of(const std::vector<Touch>& touches)
@@ -237,8 +237,8 @@ void Settler::Descent::lower(const Vec2& angles, double z, double rise, Lowered&
     out.wall.reset();
     out.ceiling = std::numeric_limits<double>::infinity();
     out.seen = z + rise;
-    const double below = std::min(std::max(most_seen, large_seen * settler_.reach_),
-                                  seen_share * settler_.reach_ * limit_);
+    const double below = std::max(2 * contact_gap, std::min(std::max(most_seen, large_seen * settler_.reach_),
+                                                            seen_share * settler_.reach_ * limit_));
     const Attitude attitude(rotation(angles), yaw_parts_);
     out.rotation = attitude.rotation;
     turn_parts(attitude.rotation);

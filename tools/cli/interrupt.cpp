@@ -23,9 +23,13 @@ void catch_interrupts()
         if (std::signal(signal, note_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup ignores SIGHUP
 }
 
+bool is_interrupted() { return interrupt_seen; }
+
+void forget_interrupt() { interrupt_seen = false; }
+
 void stop_if_interrupted()
 {
-    if (interrupt_seen) throw Interrupted{};
+    if (is_interrupted()) throw Interrupted{};
 }
 
 }  // namespace spawnfield::cli

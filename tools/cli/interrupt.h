@@ -9,6 +9,12 @@ struct Interrupted {};
 /// the program at once.
 void catch_interrupts();
 
+/// Returns whether one of these signals has arrived.
+bool is_interrupted();
+
+/// The work that was interrupted has ended, so that its result can be written: from now on, is_interrupted() is false.
+void forget_interrupt();
+
 /// Throws Interrupted if one of these signals has arrived.
 void stop_if_interrupted();
 

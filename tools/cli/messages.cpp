@@ -35,13 +35,13 @@ void complain(const std::string& message)
     std::cerr << "spawnfield: " << message << "\n";
 }
 
-Progress progress_bar(const CommonArgs& args, const std::string& label)
+Progress progress_bar(const CommonArgs& args, const std::string& label, bool throws)
 {
     const bool shown = !args.quiet && isatty(STDERR_FILENO) != 0;
     using Clock = std::chrono::steady_clock;
     auto last = std::make_shared<Clock::time_point>(Clock::now());
     return [=](double share) {
-        stop_if_interrupted();
+        if (throws) stop_if_interrupted();
         const auto now = Clock::now();
         if (!shown || now - *last < std::chrono::milliseconds(100)) return;
         *last = now;

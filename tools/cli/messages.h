@@ -18,8 +18,9 @@ void notices(const CommonArgs& args, const std::vector<std::string>& texts);
 /// Prints "spawnfield: MESSAGE" on standard error, also with --quiet: why the exit status is not 0.
 void complain(const std::string& message);
 
-/// Returns a callback that draws a bar if standard error is a terminal. The callback throws Interrupted after Ctrl-C.
-Progress progress_bar(const CommonArgs& args, const std::string& label);
+/// Returns a callback that draws a bar if standard error is a terminal. After Ctrl-C, the callback throws Interrupted,
+/// unless the work looks for that itself.
+Progress progress_bar(const CommonArgs& args, const std::string& label, bool throws = true);
 void clear_progress_bar();
 
 }  // namespace spawnfield::cli

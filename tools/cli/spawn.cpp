@@ -4,6 +4,7 @@
 #include "command.h"
 #include "fleet_args.h"
 #include "ground_args.h"
+#include "interrupt.h"
 #include "messages.h"
 #include "numbers.h"
 #include "output.h"
@@ -215,8 +216,13 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
     notice_about_avoided(args, session.map, options.avoid);
     summary.lap("load");
     const std::string hopeless = query.before_draws(session, options);
+    options.progress = progress_bar(args, command, false);
+    options.stop = is_interrupted;
     const SpawnList list = hopeless.empty() ? query.run(*session.judge, options)
                                             : nothing_drawn(session.map, options.bounds);
+    if (list.spawns.empty()) stop_if_interrupted();
+    const bool was_interrupted = is_interrupted();
+    forget_interrupt();
     if (command == "sample") summary.fullness = {list.is_full, list.undecided_area};
     summary.lap("query");
     notice_about_double_ground(args, list);
@@ -227,6 +233,10 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
     else
         write(args, *output, session, options, list);
     fill(summary, options, list);
+    if (was_interrupted)
+        return {.status = interrupted,
+                .complaint = "interrupted: " + counted(list.spawns.size(), "spawn") + " of " +
+                             std::to_string(options.count) + " were found and written"};
     if (list.spawns.size() == options.count) return {};
     return {.status = fewer_found, .notice = hopeless.empty() ? shortfall(options, args, list, command) : hopeless};
 }
