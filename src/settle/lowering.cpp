@@ -96,8 +96,9 @@ std::size_t Settler::Descent::find_near(const Bounds& robot, double low_z, doubl
     std::size_t count = 0;
     for (std::uint32_t s = 0; s < solids_.size(); ++s) {
         near_[count] = s;
-        count += std::size_t((lows_[0][s] <= x1) & (highs_[0][s] >= x0) & (lows_[1][s] <= y1) & (highs_[1][s] >= y0) &
-                             (highs_[2][s] >= bottom) & (lows_[2][s] <= top));
+        const bool meets = lows_[0][s] <= x1 && highs_[0][s] >= x0 && lows_[1][s] <= y1 && highs_[1][s] >= y0 &&
+                           highs_[2][s] >= bottom && lows_[2][s] <= top;
+        count += meets ? 1 : 0;
     }
     return count;
 }
