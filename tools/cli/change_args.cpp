@@ -111,17 +111,10 @@ Map with_scene(const CommonArgs& common, Scene extra, const std::string& file, c
     }
 }
 
-/// Reads --time: LOW:HIGH in s, or only one of the two.
 TimeWindow parse_time(const std::string& text)
 {
-    const std::size_t colon = text.find(':');
-    if (colon == std::string::npos || text.size() == 1)
-        throw ArgumentError("--time is \"" + text + "\", needs LOW:HIGH in s, for example 2:5 or 2:");
-    TimeWindow out;
-    if (colon > 0) out.from = parse_numbers("--time", text.substr(0, colon))[0];
-    if (colon + 1 < text.size()) out.to = parse_numbers("--time", text.substr(colon + 1))[0];
-    if (!(out.from <= out.to)) throw ArgumentError("--time is \"" + text + "\"; give the earlier time first");
-    return out;
+    const auto [from, to] = parse_limits("--time", text, "LOW:HIGH in s, for example 2:5 or 2:", "earlier time");
+    return {from, to};
 }
 
 }  // namespace

@@ -56,14 +56,8 @@ std::string z_text(const ZRange& z)
 
 ZRange parse_z(const std::string& option, const std::string& text)
 {
-    const std::size_t colon = text.find(':');
-    if (colon == std::string::npos || text.size() == 1)
-        throw ArgumentError(option + " is \"" + text + "\", needs LOW:HIGH in m, for example 5:8 or 5:");
-    ZRange z;
-    if (colon > 0) z.low = parse_numbers(option, text.substr(0, colon))[0];
-    if (colon + 1 < text.size()) z.high = parse_numbers(option, text.substr(colon + 1))[0];
-    if (!(z.low <= z.high)) throw ArgumentError(option + " is \"" + text + "\"; give the lower height first");
-    return z;
+    const auto [low, high] = parse_limits(option, text, "LOW:HIGH in m, for example 5:8 or 5:", "lower height");
+    return {low, high};
 }
 
 std::optional<double> parse_offset(const std::string& text)

@@ -46,6 +46,19 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
     return out;
 }
 
+Limits parse_limits(const std::string& option, const std::string& text, const std::string& form,
+                    const std::string& lower)
+{
+    const std::size_t colon = text.find(':');
+    if (colon == std::string::npos || text.size() == 1)
+        throw ArgumentError(option + " is \"" + text + "\", needs " + form);
+    Limits out;
+    if (colon > 0) out.low = parse_numbers(option, text.substr(0, colon))[0];
+    if (colon + 1 < text.size()) out.high = parse_numbers(option, text.substr(colon + 1))[0];
+    if (!(out.low <= out.high)) throw ArgumentError(option + " is \"" + text + "\"; give the " + lower + " first");
+    return out;
+}
+
 Bounds parse_bounds(const std::string& option, const std::string& text, bool flat_allowed)
 {
     const auto v = parse_numbers(option, text);

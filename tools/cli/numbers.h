@@ -4,6 +4,7 @@
 #include <spawnfield/query.h>
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,16 @@ std::string counted(std::uint64_t count, const std::string& noun);
 /// Reads finite numbers with `separator` between them. Throws ArgumentError, whose message ends with `advice`.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, char separator = ',',
                                   const std::string& advice = "");
+
+/// Two numbers, the smaller one first.
+struct Limits {
+    double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+};
+
+/// Reads "LOW:HIGH", "LOW:" or ":HIGH". Throws ArgumentError: its message says that the text needs `form`, or that
+/// `lower` must be given first.
+Limits parse_limits(const std::string& option, const std::string& text, const std::string& form,
+                    const std::string& lower);
 
 /// Reads "x0,y0,z0,x1,y1,z1", or with `flat_allowed` also "x0,y0,x1,y1", which means all heights. Throws ArgumentError.
 Bounds parse_bounds(const std::string& option, const std::string& text, bool flat_allowed);
