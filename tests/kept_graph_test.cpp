@@ -11,6 +11,7 @@
 #include <spawnfield/bake.h>
 #include <spawnfield/input_file.h>
 #include <spawnfield/kept_graph.h>
+#include <spawnfield/path.h>
 #include <spawnfield/output_file.h>
 
 #include <filesystem>
@@ -115,6 +116,36 @@ TEST_CASE("a drivable graph is kept in the map's folder, and read again")
     CHECK_NOTHROW(verify_map(rooms.folder));
 }
 
+TEST_CASE("a graph with its ways is kept, too, and serves for islands")
+{
+    const BakedRooms rooms;
+    const ReachOptions options{.step = reach_step, .keep_ways = true};
+    const Judge judge = rooms.judge();
+    const KeptGraph built = kept_graph(judge, options), again = kept_graph(judge, options);
+    CHECK(!built.is_read);
+    CHECK(again.is_read);
+    check_equal(again.graph, built.graph, judge);
+    CHECK(again.graph.impl()->ways == built.graph.impl()->ways);
+    PathSearch search(built.graph), search_again(again.graph);
+    const std::vector<ReachPlace> places = built.graph.places();
+    std::size_t found = 0;
+    for (std::size_t k = 0; k + 7 < places.size(); k += places.size() / 40) {
+        const SettledPose start = judge.settle({places[k].x, places[k].y, places[k].ground}, 0),
+                          goal = judge.settle({places[k + 7].x, places[k + 7].y, places[k + 7].ground}, 1);
+        const auto path = search.path(start, goal), other = search_again.path(start, goal);
+        REQUIRE(path.has_value() == other.has_value());
+        if (!path) continue;
+        ++found;
+        CHECK(path->length == other->length);
+        CHECK(path->poses.size() == other->poses.size());
+    }
+    CHECK(found > 5);
+    const KeptGraph islands = kept_graph(judge, {.step = reach_step});
+    CHECK(islands.is_read);
+    CHECK(rooms.kept_files().size() == 1);
+    check_equal(islands.graph, ReachGraph(judge, {.step = reach_step}), judge);
+}
+
 TEST_CASE("a kept graph is only for the same map, robot, limits and options")
 {
     const BakedRooms rooms;
@@ -127,6 +158,9 @@ TEST_CASE("a kept graph is only for the same map, robot, limits and options")
     add(rooms.judge(), {.step = reach_step / 2});
     add(rooms.judge(), {.drive = Drive::Omni, .step = reach_step});
     add(rooms.judge(), {.max_step = 0.05, .step = reach_step});
+    for (const double radius : {1.0, 2.0})
+        add(rooms.judge(), {.drive = Drive::Car, .turning_radius = radius, .step = reach_step});
+    add(rooms.judge(), {.step = reach_step, .keep_ways = true});
     add(rooms.judge({.max_height = 0.5}), options);
     add(rooms.judge({.max_water_depth = 0.5}), options);
     add(rooms.judge({.stand = {.lift = 0.01}}), options);
@@ -188,11 +222,11 @@ TEST_CASE("numbers of a kept graph that do not fit each other are refused")
     const ReachOptions options{.step = reach_step};
     using Impl = ReachGraph::Impl;
     const Impl graph(judge, options);
-    CHECK_NOTHROW(Impl(judge, options, graph.bytes()));
+    CHECK_NOTHROW(Impl(judge, options, Impl::Keep::Islands, graph.bytes()));
     const auto check_refused = [&](const auto& change) {
         Impl other(judge, options);
         change(other);
-        CHECK_THROWS_AS(Impl(judge, options, other.bytes()), std::exception);
+        CHECK_THROWS_AS(Impl(judge, options, Impl::Keep::Islands, other.bytes()), std::exception);
     };
     check_refused([](Impl& other) { other.first.pop_back(); });
     check_refused([](Impl& other) { std::swap(other.first.front(), other.first.back()); });
@@ -200,8 +234,28 @@ TEST_CASE("numbers of a kept graph that do not fit each other are refused")
     check_refused([](Impl& other) { other.valid.back() = 0; });
     check_refused([](Impl& other) { other.first_node[1] = 3; });
     check_refused([](Impl& other) { other.node_islands.back() = std::uint32_t(other.islands.size()); });
-    CHECK_THROWS(Impl(judge, {.step = reach_step / 2}, graph.bytes()));
-    CHECK_THROWS(Impl(judge, options, std::string_view(graph.bytes()).substr(0, 100)));
+    CHECK_THROWS(Impl(judge, {.step = reach_step / 2}, Impl::Keep::Islands, graph.bytes()));
+    CHECK_THROWS(Impl(judge, options, Impl::Keep::Islands, std::string_view(graph.bytes()).substr(0, 100)));
+}
+
+TEST_CASE("ways of a kept graph that lead nowhere are refused")
+{
+    const Judge judge(map_of(two_rooms()), small_robot());
+    const ReachOptions options{.step = reach_step};
+    using Impl = ReachGraph::Impl;
+    const auto bytes_with = [&](const auto& change) {
+        Impl graph(judge, options, Impl::Keep::Ways);
+        change(graph.ways);
+        return graph.bytes();
+    };
+    const auto read = [&](const std::string& bytes) { return Impl(judge, options, Impl::Keep::Ways, bytes); };
+    CHECK_NOTHROW(read(bytes_with([](auto&) {})));
+    CHECK_THROWS(read(bytes_with([](auto& ways) { ways[std::size_t(Way::Left)].pop_back(); })));
+    CHECK_THROWS(read(bytes_with([](auto& ways) { ways[std::size_t(Way::Turn)].clear(); })));
+    CHECK_THROWS(read(bytes_with([](auto& ways) { ways[std::size_t(Way::Aside)] = ways[0]; })));
+    CHECK_THROWS(read(bytes_with([](auto& ways) { ways[std::size_t(Way::Ahead)][0][8] = 0; })));  // out of the grid
+    CHECK_THROWS(read(bytes_with([](auto& ways) { ways[std::size_t(Way::Ahead)][0][0] = 200; })));
+    CHECK_THROWS(read(Impl(judge, options).bytes()));
 }
 
 TEST_CASE("a new bake keeps graphs of the same map, and removes those of another one")

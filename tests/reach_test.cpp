@@ -106,8 +106,9 @@ void compare_ways(const Impl& graph, const slow::Reach& expected, Compared& out)
     DisjointSets sets;
     sets.grow(numbers.size());
     for_each_state(graph, [&](const slow::Reach::State& state, std::size_t place) {
-        for (const Way way : {Way::Ahead, Way::Left, Way::Right, Way::Aside, Way::Turn}) {
-            if (way == Way::Aside && graph.options.drive != Drive::Omni) continue;
+        for (const Way way : all_ways) {
+            if (way == Way::Aside && !goes_aside(*graph.options.drive)) continue;
+            if (way == Way::Turn && graph.options.drive == Drive::Car) continue;
             CAPTURE(state, int(way));
             const std::optional<int> target = expected.target(state, way);
             ++(target ? out.ways : out.no_ways)[std::size_t(way)];
@@ -115,7 +116,7 @@ void compare_ways(const Impl& graph, const slow::Reach& expected, Compared& out)
             CHECK(found.has_value() == target.has_value());
             if (!target) continue;
             if (way != Way::Turn) CHECK(found == target);
-            const WayEnd end = way_end(way, state[3]);
+            const WayEnd end = graph.lattice.end(way, state[3]);
             sets.join(numbers.at(state),
                       numbers.at({state[0] + end.move.cols, state[1] + end.move.rows, *target, end.heading}));
         }
@@ -251,7 +252,8 @@ std::vector<Robot> robots_of_all_kinds()
 std::size_t check_proven(const TestMap& map, const Robot& robot, double step, const JudgeOptions& limits = {})
 {
     const Judge judge(map, robot, limits);
-    WayJudge ways(judge.impl(), 0.03, step);
+    const Lattice lattice;
+    WayJudge ways(judge.impl(), 0.03, lattice, step / lattice.longest());
     std::size_t proven = 0;
     std::vector<PlaceStates> places;
     for (double y = map.bounds.min.y(); y <= map.bounds.max.y(); y += step)
@@ -348,21 +350,45 @@ Scene spiral(int turns)
 
 TEST_CASE("each way of the lattice has a reverse")
 {
-    for (int k = 0; k < headings; ++k) {
-        const int back = lattice_heading(k, headings / 2);
-        const auto is_reverse = [&](Way way, int heading, Way other, int other_heading) {
-            const LatticeMove sum = way_end(way, heading).move + way_end(other, other_heading).move;
-            return sum.cols == 0 && sum.rows == 0;
-        };
-        CHECK(is_reverse(Way::Ahead, k, Way::Ahead, back));
-        CHECK(is_reverse(Way::Aside, k, Way::Aside, back));
-        // The end of a curve to the left is the beginning of one to the right, for a robot that has turned around.
-        const WayEnd left = way_end(Way::Left, k);
-        const int turned = lattice_heading(left.heading, headings / 2);
-        CHECK(is_reverse(Way::Left, k, Way::Right, turned));
-        CHECK(way_end(Way::Right, turned).heading == back);
-        CHECK(way_end(Way::Turn, k).heading == lattice_heading(k, 1));
-        CHECK(std::abs(left.move.rows) <= longest_way_rows);
+    for (const double radius : {0.0, 1.0, 5.3, 40.0}) {
+        CAPTURE(radius);
+        const Lattice lattice(radius);
+        for (int k = 0; k < headings; ++k) {
+            const int back = lattice_heading(k, headings / 2);
+            const auto is_reverse = [&](Way way, int heading, Way other, int other_heading) {
+                const LatticeMove sum = lattice.end(way, heading).move + lattice.end(other, other_heading).move;
+                return sum.cols == 0 && sum.rows == 0;
+            };
+            CHECK(is_reverse(Way::Ahead, k, Way::Ahead, back));
+            CHECK(is_reverse(Way::Aside, k, Way::Aside, back));
+            // The end of a curve to the left is the beginning of one to the right, for a robot that has turned around.
+            const WayEnd left = lattice.end(Way::Left, k);
+            const int turned = lattice_heading(left.heading, headings / 2);
+            CHECK(is_reverse(Way::Left, k, Way::Right, turned));
+            CHECK(lattice.end(Way::Right, turned).heading == back);
+            CHECK(lattice.end(Way::Turn, k).heading == lattice_heading(k, 1));
+            CHECK(std::abs(left.move.rows) <= lattice.longest_rows());
+            CHECK(left.move.length() <= lattice.longest());
+        }
+    }
+    CHECK(Lattice().longest_rows() == 3);
+}
+
+TEST_CASE("the arcs of a car have at least its turning radius, and hardly more moves than needed")
+{
+    for (const double radius : {0.1, 1.0, 4.2, 5.3, 40.0}) {
+        const Lattice lattice(radius);
+        for (int k = 0; k < headings; ++k)
+            for (const Way way : {Way::Left, Way::Right}) {
+                CAPTURE(radius, k);
+                const Curve curve = lattice.curve(way, k);
+                CHECK(curve.radius() >= radius * (1 - 1e-9));
+                CHECK((curve.first == 0 || curve.last == 0));
+                // With one move less on each line, the arc would be too small, unless there is only one.
+                const double moves = lattice.corner(way, k).length() / lattice_move(k).length();
+                const double tangent = radius * std::tan(curve.turn / 2);
+                CHECK((moves == 1 || (moves - 1) * lattice_move(k).length() < tangent));
+            }
     }
 }
 
@@ -378,14 +404,15 @@ TEST_CASE("the yaws of the lattice agree with its moves, and curves end tangenti
         CHECK(turn > 0.3);
         CHECK(turn < 0.5);
         before = yaw;
-        // The last side of the control polygon of a curve is the move at its last heading.
+        // From the corner of a curve, the move at its last heading leads to its end.
+        const Lattice lattice;
         for (const Way way : {Way::Left, Way::Right}) {
-            const WayEnd end = way_end(way, k);
+            const WayEnd end = lattice.end(way, k);
             const LatticeMove last = lattice_move(end.heading);
             CHECK(end.move.cols - move.cols == last.cols);
             CHECK(end.move.rows - move.rows == last.rows);
         }
-        const LatticeMove aside = way_end(Way::Aside, k).move;
+        const LatticeMove aside = lattice.end(Way::Aside, k).move;
         CHECK(aside.cols == -move.rows);
         CHECK(aside.rows == move.cols);
     }
@@ -403,17 +430,18 @@ TEST_CASE("the graph is that of its definition in random scenes")
         const TestMap whole = map_of(hard.scene, hard.resolution);
         const Bounds crop = compare::crop_near(whole, random, step, 7);
         const TestMap map = map_of(hard.scene, hard.resolution, crop);
-        const ReachOptions options{.drive = seed % 3 == 0 ? Drive::Omni : Drive::Differential,
-                                   .max_step = random.chance(0.5) ? 0.03 : random.between(0, 0.3),
-                                   .step = step,
-                                   .threads = 1};
+        ReachOptions options{.drive = std::array{Drive::Differential, Drive::Car, Drive::Omni, Drive::Legged}[seed % 4],
+                             .max_step = random.chance(0.5) ? 0.03 : random.between(0, 0.3),
+                             .step = step,
+                             .threads = 1};
+        if (options.drive == Drive::Car) options.turning_radius = step * random.between(0.1, 12);
         compare_graph(map, robot, {.max_height = hard.max_height}, options, all);
     }
     if (!compare::all_scenes) return;
     for (std::size_t way = 0; way < way_count; ++way) {
         CAPTURE(way);
         CHECK(all.ways[way] >= 500);
-        CHECK(all.no_ways[way] >= 200);
+        CHECK(all.no_ways[way] >= 100);
     }
 }
 
@@ -425,8 +453,10 @@ TEST_CASE("the graph is that of its definition on floors with walls, blocks and 
         const TestMap map = map_of(furnished(seed, 0.8), 0.1);
         Robot robot = seed % 2 ? boxy({0.5, 0.3, 0.25}) : without_round_parts(wheeled());
         if (seed % 2 == 0) robot = enlarged(robot, 0.5);
-        const ReachOptions options{
-            .drive = seed % 4 < 2 ? Drive::Omni : Drive::Differential, .step = 0.16, .threads = 1};
+        ReachOptions options{.drive = std::array{Drive::Omni, Drive::Car, Drive::Differential, Drive::Omni}[seed % 4],
+                             .step = 0.16,
+                             .threads = 1};
+        if (options.drive == Drive::Car) options.turning_radius = 1;
         compare_graph(map, robot, {}, options, all);
     }
     if (!compare::all_scenes) return;
@@ -533,6 +563,84 @@ TEST_CASE("a ramp joins two floors up to the limit of slopes")
         const Impl graph = graph_of(map, robot, {.step = 0.075});
         CHECK(is_joined(graph, {-1.5, 0, 0}, {map.bounds.max.x() - 0.5, 0, height}) == (more < 0));
     }
+}
+
+TEST_CASE("a crest that a robot passes joins two floors at any reach step")
+{
+    for (const Robot& robot : {boxy({0.8, 0.5, 0.3}), boxy({0.4, 0.3, 0.2})})
+        for (const double angle : {10.0, 17.5, 24.0})
+            for (double step = 0.1; step < 0.31; step += 0.023) {
+                CAPTURE(robot.parts[0].shape.size.x(), angle, step);
+                const TestMap map = map_of(ramp(rad(angle), 0.8));
+                const Impl graph = graph_of(map, robot, {.step = step});
+                CHECK(is_joined(graph, {-1.5, 0, 0}, {map.bounds.max.x() - 0.5, 0, 0.8}));
+            }
+}
+
+TEST_CASE("a car turns around where it has room, and not in a corridor")
+{
+    // A corridor along x with an open end, between two walls.
+    const auto corridor = [](double open) {
+        Scene scene;
+        add_block(scene, {-2, -2, -0.5}, {4, 2, 0});
+        for (const double side : {-1.0, 1.0}) {
+            const double near = 0.2 * side, far = 2 * side;
+            add_obstacle(scene, {-2, std::min(near, far), 0}, {4 - open, std::max(near, far), 1});
+        }
+        return map_of(scene);
+    };
+    const Robot robot = boxy({0.4, 0.24, 0.2});
+    const auto turns_around = [&](double open, Drive drive, double radius) {
+        ReachOptions options{.drive = drive, .step = 0.1};
+        if (drive == Drive::Car) options.turning_radius = radius;
+        const Impl graph = graph_of(corridor(open), robot, options);
+        std::optional<std::uint32_t> ahead, back;
+        for_each_state(graph, [&](const slow::Reach::State& state, std::size_t place) {
+            const Vec2 at(graph.grid.x_of(state[0]), graph.grid.y_of(state[1]));
+            if (std::abs(at.x()) > 0.051 || std::abs(at.y()) > 0.051) return;
+            if (state[3] == 0) ahead = island_at(graph, place, 0);
+            if (state[3] == headings / 2) back = island_at(graph, place, headings / 2);
+        });
+        REQUIRE((ahead && back));
+        return *ahead == *back;
+    };
+    CHECK(turns_around(2, Drive::Differential, 0));
+    CHECK(!turns_around(0, Drive::Differential, 0));  // its diagonal is wider than the corridor
+    CHECK(turns_around(2, Drive::Car, 0.5));
+    CHECK(!turns_around(2, Drive::Car, 30));
+    CHECK(!turns_around(0.1, Drive::Car, 0.5));
+    CHECK(!turns_around(0, Drive::Car, 0.1));
+}
+
+TEST_CASE("how a robot drives is what was given, what its file says, or the default")
+{
+    Robot robot = boxy({0.4, 0.3, 0.2});
+    CHECK(with_defaults({}, robot).drive == Drive::Differential);
+    CHECK(with_defaults({}, robot).max_step == 0.03);
+    CHECK(with_defaults({}, robot).step == Approx(0.075));
+    robot.drive.wheel_radius = 0.2;
+    CHECK(with_defaults({}, robot).max_step == Approx(0.05));
+    robot.drive.max_step = 0.02;
+    CHECK(with_defaults({}, robot).max_step == 0.02);
+    CHECK(with_defaults({.max_step = 0.1}, robot).max_step == 0.1);
+    robot.drive.kind = Drive::Car;
+    CHECK_THROWS_WITH(
+        with_defaults({}, robot),
+        "ReachGraph: a car needs the smallest radius of its curves: --turning-radius, or turning_radius in "
+        "robot.yaml, m");
+    robot.drive.turning_radius = 3;
+    CHECK(with_defaults({}, robot).turning_radius == 3);
+    CHECK(with_defaults({.turning_radius = 4}, robot).turning_radius == 4);
+    CHECK(!with_defaults({.drive = Drive::Omni}, robot).turning_radius);
+    CHECK_THROWS_WITH(with_defaults({.drive = Drive::Omni, .turning_radius = 4}, robot),
+                      "ReachGraph: turning_radius is only for a car; the drive is omni");
+    CHECK_THROWS_WITH(with_defaults({.turning_radius = -1}, robot),
+                      "ReachGraph: turning_radius is -1, needs > 0 m, at most 100 m");
+    robot.drive = {.kind = Drive::Legged};
+    CHECK_THROWS_WITH(with_defaults({}, robot),
+                      "ReachGraph: a legged robot needs the largest step that it climbs: --max-step, or max_step in "
+                      "robot.yaml, m");
+    CHECK(with_defaults({.max_step = 0.2}, robot).max_step == 0.2);
 }
 
 TEST_CASE("a step joins two floors up to the limit of steps")

@@ -129,6 +129,42 @@ TEST_CASE("the Husky of maps/robots is the one of the thesis")
     CHECK(robot.contacts.size() == 4);
 }
 
+TEST_CASE("robot.yaml says how a robot drives")
+{
+    const TempFolder folder;
+    const auto drive_of = [&](const std::string& keys) { return load_parts(folder, "  - {sphere: 1}\n" + keys).drive; };
+    CHECK(!drive_of("").kind);
+    CHECK(drive_of("drive: omni\n").kind == Drive::Omni);
+    CHECK(drive_of("drive: legged\nmax_step: 0.2\n").max_step == 0.2);
+    CHECK(drive_of("drive: car\nturning_radius: 5.5\n").turning_radius == 5.5);
+    CHECK(drive_of("wheel_radius: 0.165\n").wheel_radius == 0.165);
+}
+
+TEST_CASE("the wheel radius of a URDF is that of its smallest wheel")
+{
+    const TempFolder folder;
+    const auto cylinder = [](double radius) {
+        return "<cylinder radius=\"" + std::to_string(radius) + "\" length=\"0.1\"/>";
+    };
+    const std::string lying = "xyz=\"0 0 0\" rpy=\"1.5708 0 0\"";
+    std::string text = link_of("base", small_box);
+    CHECK(!load_urdf(folder, text).drive.wheel_radius);
+    // A sensor that turns about a vertical axis is no wheel, nor is one that turns about another axis than its own.
+    text += link_of("lidar", cylinder(0.02)) +
+            axis_joint("scan", "continuous", "base", "lidar", "xyz=\"0 0 1\"", "0 0 1");
+    text += link_of("camera", cylinder(0.03)) +
+            axis_joint("nod", "continuous", "base", "camera", "xyz=\"1 0 1\"", "0 1 0");
+    text += link_of("arm", cylinder(0.04), lying) +
+            axis_joint("lift", "revolute", "base", "arm", "xyz=\"0 0 1\"", "0 1 0", "lower=\"-1\" upper=\"1\"");
+    CHECK(!load_urdf(folder, text).drive.wheel_radius);
+    text += link_of("wheel", cylinder(0.3), lying) +
+            axis_joint("roll", "continuous", "base", "wheel", "xyz=\"0 1 0\"", "0 1 0");
+    CHECK(load_urdf(folder, text).drive.wheel_radius == 0.3);
+    text += link_of("ball", "<sphere radius=\"0.1\"/>") +
+            axis_joint("ball_joint", "continuous", "base", "ball", "xyz=\"-1 0 0\"", "1 0 0");
+    CHECK(load_urdf(folder, text).drive.wheel_radius == 0.1);
+}
+
 TEST_CASE("the mesh of a robot becomes its convex hull, with scale, up axis, rotation and position")
 {
     const TempFolder folder;
@@ -326,6 +362,14 @@ TEST_CASE("a robot that cannot be used is refused by file, place, value and limi
         {"  - {mesh: flat.obj}\n", "part 1: mesh cannot be used: " + (folder / "flat.obj").string() +
                                        ": its convex hull has no volume: its points lie in a plane (line 4)"},
         {"  - {sphere: 1}\ncontacts: [[1, 2]]\n", "contacts has 2 numbers, needs 3 (line 5)"},
+        {"  - {sphere: 1}\ndrive: tank\n", "drive is \"tank\", needs one of differential, omni, legged, car (line 5)"},
+        {"  - {sphere: 1}\ndrive: car\n",
+         "drive is car, which needs turning_radius: the smallest radius of its curves, m (line 5)"},
+        {"  - {sphere: 1}\ndrive: legged\n",
+         "drive is legged, which needs max_step: the largest step that it climbs, m (line 5)"},
+        {"  - {sphere: 1}\nturning_radius: 2\n", "turning_radius is only for drive: car (line 5)"},
+        {"  - {sphere: 1}\nmax_step: -1\n", "max_step is -1, needs >= 0 m (line 5)"},
+        {"  - {sphere: 1}\nwheel_radius: 0\n", "wheel_radius is 0, needs > 0 (line 5)"},
     };
     for (const auto& [text, wanted] : parts) CHECK_THROWS_WITH(load_parts(folder, text), yaml + ": " + wanted);
 

@@ -2,6 +2,8 @@
 
 #include <spawnfield/column.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -35,7 +37,8 @@ std::vector<Vec3> corners_of(const RobotPart& part)
 }
 
 Reach::Reach(const Judge& judge, const ReachOptions& options, const RasterGrid& grid, const Geometry& surfaces)
-    : judge_(judge), options_(options), grid_(grid), surfaces_(surfaces), cols_(grid.cols), rows_(grid.rows)
+    : judge_(judge), options_(options), grid_(grid), lattice_(options.turning_radius.value_or(0) / grid.step),
+      surfaces_(surfaces), cols_(grid.cols), rows_(grid.rows)
 {
     for (int row = 0; row < rows_; ++row)
         for (int col = 0; col < cols_; ++col) {
@@ -92,13 +95,13 @@ std::optional<int> Reach::next_place(const State& from, int col, int row, int he
         least = size;
         out = k;
     }
-    return least <= options_.max_step + 1e-9 ? out : std::nullopt;
+    return least <= *options_.max_step + 1e-9 ? out : std::nullopt;
 }
 
 /// Returns where the ground leads on a way between different columns.
 std::optional<int> Reach::end_of_ground(const State& from, Way way) const
 {
-    const WayEnd end = way_end(way, from[3]);
+    const WayEnd end = lattice_.end(way, from[3]);
     const int col = from[0] + end.move.cols, row = from[1] + end.move.rows;
     if (way == Way::Ahead || way == Way::Aside) return next_place(from, col, row, end.heading);
     const LatticeMove half = lattice_move(from[3]);
@@ -111,7 +114,8 @@ std::optional<int> Reach::end_of_ground(const State& from, Way way) const
 
 std::optional<int> Reach::target(const State& from, Way way) const
 {
-    const WayEnd end = way_end(way, from[3]);
+    if (options_.drive == Drive::Car && is_curve(way)) return target_of_car(from, way);
+    const WayEnd end = lattice_.end(way, from[3]);
     State to{from[0] + end.move.cols, from[1] + end.move.rows, from[2], end.heading};
     if (way == Way::Turn) {
         if (!places(to[0], to[1])[std::size_t(to[2])].poses[std::size_t(end.heading)]) return std::nullopt;
@@ -120,38 +124,129 @@ std::optional<int> Reach::target(const State& from, Way way) const
         if (!k) return std::nullopt;
         to[2] = *k;
     }
-    const std::vector<Posed> poses = poses_on_way(from, to, way);
-    const double lift = judge_.options().stand.lift, higher = options_.max_step;
-    if (is_free(poses, lift, lift)) return to[2];
-    const bool is_higher_free = higher > lift && is_free(poses, higher, higher) &&
-                                is_free({poses.front(), poses.front()}, lift, higher) &&
-                                is_free({poses.back(), poses.back()}, lift, higher);
-    return is_higher_free ? std::optional(to[2]) : std::nullopt;
+    return can_follow(course(from, to, way), pose(from), pose(to)) || passes_kink(from, to, way) ? std::optional(to[2])
+                                                                                                 : std::nullopt;
 }
 
-/// Returns the poses between which each part covers the hull of the part at both.
-std::vector<Reach::Posed> Reach::poses_on_way(const State& from, const State& to, Way way) const
+/// Goes straight in four pieces if the robot tilts, and is let down after each of them.
+bool Reach::passes_kink(const State& from, const State& to, Way way) const
 {
-    const SettledPose &a = *places(from[0], from[1])[std::size_t(from[2])].poses[std::size_t(from[3])],
-                      &b = *places(to[0], to[1])[std::size_t(to[2])].poses[std::size_t(to[3])];
-    const double turn = std::remainder(b.yaw - a.yaw, 2 * std::numbers::pi);
-    const bool tilts = std::abs(a.roll - b.roll) > 0.1 || std::abs(a.pitch - b.pitch) > 0.1;
-    const int pieces = from[3] != to[3] || tilts ? 4 : 1;
-    const bool is_curve = way == Way::Left || way == Way::Right;
-    const Vec2 p0 = at(from[0], from[1]), p2 = at(to[0], to[1]),
-               p1 = p0 + grid_.step * vector_of(lattice_move(from[3]));
-    std::vector<Posed> out;
-    for (int k = 0; k <= pieces; ++k) {
-        const double t = double(k) / pieces, u = 1 - t;
-        const Vec2 place = is_curve ? Vec2(u * u * p0 + 2 * u * t * p1 + t * t * p2) : Vec2(u * p0 + t * p2),
-                   tangent = u * (p1 - p0) + t * (p2 - p1);
-        const double yaw = is_curve ? std::atan2(tangent.y(), tangent.x()) : a.yaw + t * turn;
-        out.push_back({{place.x(), place.y(), u * a.position.z() + t * b.position.z()},
-                       u * a.roll + t * b.roll,
-                       u * a.pitch + t * b.pitch,
-                       yaw});
+    const SettledPose &a = pose(from), &b = pose(to);
+    if ((way != Way::Ahead && way != Way::Aside) || pieces(a, b, false)[0] == pieces(a, b, false)[1]) return false;
+    const Course whole = course(from, to, way);
+    std::optional<SettledPose> here = a;
+    for (int k = 1; k <= 4 && here; ++k)
+        here = next_stop(*here, k < 4 ? at(whole, k / 4.0).first : whole.end, yaw_of(to[3]));
+    return here && here->ground->height == b.ground->height;
+}
+
+/// Returns into how many pieces a way is cut first, and then.
+std::array<int, 2> Reach::pieces(const SettledPose& a, const SettledPose& b, bool turns) const
+{
+    double radius = 0;
+    for (const RobotPart& part : judge_.robot().parts)
+        for (const Vec3& corner : corners_of(part)) radius = std::max(radius, corner.norm());
+    const double tilt = std::max(std::abs(a.roll - b.roll), std::abs(a.pitch - b.pitch));
+    const int few = turns || tilt > 0.1 ? 4 : 1;
+    return {few, std::max(few, int(std::ceil(tilt * radius / 0.01)))};
+}
+
+/// A car stands at the ends of all pieces of a curve, on the layer with the smallest step.
+std::optional<int> Reach::target_of_car(const State& from, Way way) const
+{
+    const WayEnd end = lattice_.end(way, from[3]);
+    const int col = from[0] + end.move.cols, row = from[1] + end.move.rows;
+    if (col < 0 || row < 0 || col >= cols_ || row >= rows_) return std::nullopt;
+    const Course whole = course(from, {col, row, 0, end.heading}, way);
+    const int count = int(std::ceil(length(whole) / grid_.step - 1e-9));
+    std::optional<SettledPose> here = pose(from);
+    for (int k = 1; k <= count && here; ++k) {
+        const auto [place, yaw] = at(whole, double(k) / count);
+        here = next_stop(*here, k < count ? place : whole.end, k < count ? yaw : yaw_of(end.heading));
     }
+    const std::vector<ReachPlace>& there = places(col, row);
+    for (int k = 0; k < int(there.size()) && here; ++k)
+        if (there[std::size_t(k)].ground == here->ground->height) return k;
+    return std::nullopt;
+}
+
+std::optional<SettledPose> Reach::next_stop(const SettledPose& from, const Vec2& to, double yaw) const
+{
+    std::optional<SettledPose> out;
+    double least = infinity;
+    for (const double height : column_at(judge_.map().geometry, to.x(), to.y()).layers) {
+        if (!judge_.map().z_limits.contains(height, 0)) continue;
+        const SettledPose there = judge_.settle({to.x(), to.y(), height}, yaw);
+        if (there.verdict != Verdict::Valid) continue;
+        const double size = step(from.position.head<2>(), from.ground->height, to, height);
+        if (size >= least) continue;
+        least = size;
+        out = there;
+    }
+    if (!out || least > *options_.max_step + 1e-9) return std::nullopt;
+    const Course straight{from.position.head<2>(), to, from.yaw, std::remainder(yaw - from.yaw, 2 * std::numbers::pi)};
+    return can_follow(straight, from, *out) ? out : std::nullopt;
+}
+
+Reach::Course Reach::course(const State& from, const State& to, Way way) const
+{
+    const double yaw = yaw_of(from[3]);
+    Course out{at(from[0], from[1]), at(to[0], to[1]), yaw, std::remainder(yaw_of(to[3]) - yaw, 2 * std::numbers::pi)};
+    if (is_curve(way)) out.corner = out.begin + grid_.step * vector_of(lattice_.corner(way, from[3]));
     return out;
+}
+
+double Reach::length(const Course& course)
+{
+    if (!course.corner) return (course.end - course.begin).norm();
+    const double first = (*course.corner - course.begin).norm(), last = (course.end - *course.corner).norm(),
+                 tangent = std::min(first, last), turn = std::abs(course.turn);
+    return first + last - 2 * tangent + turn * tangent / std::tan(turn / 2);
+}
+
+/// In a curve: the point of the circle that touches both lines, or of the rest of the longer line.
+std::pair<Vec2, double> Reach::at(const Course& course, double part)
+{
+    if (!course.corner) return {course.begin + part * (course.end - course.begin), course.yaw + part * course.turn};
+    const Vec2 corner = *course.corner, ahead = (corner - course.begin).normalized(),
+               beyond = (course.end - corner).normalized(), left(-ahead.y(), ahead.x());
+    const double tangent = std::min((corner - course.begin).norm(), (course.end - corner).norm()),
+                 turn = std::abs(course.turn), radius = tangent / std::tan(turn / 2);
+    const Vec2 arc_begin = corner - tangent * ahead, arc_end = corner + tangent * beyond,
+               centre = arc_begin + (course.turn > 0 ? radius : -radius) * left;
+    double driven = part * length(course);
+    if (driven <= (arc_begin - course.begin).norm()) return {course.begin + driven * ahead, course.yaw};
+    driven -= (arc_begin - course.begin).norm();
+    if (driven >= radius * turn) return {arc_end + (driven - radius * turn) * beyond, course.yaw + course.turn};
+    const double angle = (course.turn > 0 ? 1 : -1) * driven / radius;
+    return {centre + Eigen::Rotation2Dd(angle) * (arc_begin - centre), course.yaw + angle};
+}
+
+/// Returns whether the robot meets nothing between two poses: in few pieces, or if that is not enough, in many.
+bool Reach::can_follow(const Course& course, const SettledPose& a, const SettledPose& b) const
+{
+    for (const int count : pieces(a, b, course.turn != 0)) {
+        std::vector<Posed> poses;
+        for (int k = 0; k <= count; ++k) {
+            const double t = double(k) / count, u = 1 - t;
+            const auto [place, yaw] = at(course, t);
+            poses.push_back({{place.x(), place.y(), u * a.position.z() + t * b.position.z()},
+                             u * a.roll + t * b.roll,
+                             u * a.pitch + t * b.pitch,
+                             yaw});
+        }
+        if (is_possible(poses)) return true;
+    }
+    return false;
+}
+
+/// Returns whether the robot meets nothing between these poses if it is raised by the lift, or by the largest step.
+bool Reach::is_possible(const std::vector<Posed>& poses) const
+{
+    const double lift = judge_.options().stand.lift, higher = *options_.max_step;
+    if (is_free(poses, lift, lift)) return true;
+    return higher > lift && is_free(poses, higher, higher) && is_free({poses.front(), poses.front()}, lift, higher) &&
+           is_free({poses.back(), poses.back()}, lift, higher);
 }
 
 bool Reach::is_free(const std::vector<Posed>& poses, double lift_begin, double lift_end) const

@@ -18,7 +18,7 @@ struct PairOptions {
     double min_path = 0;                                        ///< m, >= 0; shortest path from start to goal
     double max_path = std::numeric_limits<double>::infinity();  ///< m, >= min_path
     double min_detour = 1;                                      ///< >= 1; limit of StartGoal::detour()
-    /// Whether paths are those of PathSearch. Otherwise, they are shortest paths of the graph: up to 2.8 % longer in
+    /// Whether paths are those of PathSearch. Otherwise, they are shortest paths of the graph: up to 2 % longer in
     /// the open, in about a tenth of the time.
     bool shorten = true;
     bool keep_paths = false;  ///< whether StartGoal::path is filled

@@ -27,7 +27,7 @@ struct Path {
 /// ReachGraph::island_of() finds for it, by a straight way whose length is the distance between both grounds. Of paths
 /// with the same length, one with the fewest turns on the spot is found. Paths are at most 100 km long.
 ///
-/// Paths of the graph have only 16 headings, so in the open they are up to 2.8 % too long. Therefore, the path is
+/// Paths of the graph have only 16 headings, so in the open they are up to 2 % too long. Therefore, the path is
 /// shortened by straight ways at any heading, on which the robot turns on the spot first, and at the end. These ways
 /// comply with the rules of the graph's ways in pieces of at most a reach step; the length of a piece is the distance
 /// between the grounds at its ends. Corners are pulled tight. The result is a path that the robot can drive, in most

@@ -10,16 +10,13 @@
 
 namespace spawnfield {
 
-/// How a robot moves on the ground.
-enum class Drive : std::uint8_t {
-    Differential,  ///< straight ahead and back, and it turns on the spot
-    Omni           ///< also to the sides
-};
-
+/// All values are those that were given, those of Robot::drive, or the defaults, in this order.
 struct ReachOptions {
-    Drive drive = Drive::Differential;
-    /// m, >= 0; largest step up or down in the ground that the robot overcomes. See ReachGraph.
-    double max_step = 0.03;
+    std::optional<Drive> drive = {};  ///< default: Differential
+    /// m, >= 0; largest step up or down in the ground that the robot overcomes. See ReachGraph. Default: a quarter of
+    /// the wheel radius; 0.03 m if that is not known. A legged robot has no default.
+    std::optional<double> max_step = {};
+    std::optional<double> turning_radius = {};  ///< m, > 0; only for a car, which has no default
     /// m between columns, > 0; no value: auto_reach_step().
     std::optional<double> step = {};
     /// Whether all ways are examined and kept, for PathSearch: 64 bytes for each place (Omni: 80), and a longer time.
@@ -49,11 +46,12 @@ struct ReachPlace {
 /// which a straight way leads to another column after one or two columns or rows. There is an edge between two states
 /// if there is a way from one to the other:
 ///
-/// - a turn on the spot, to the next heading;
-/// - straight ahead, to the next column in its heading; with Drive::Omni also straight to the left;
+/// - a turn on the spot, to the next heading; not with Drive::Car;
+/// - straight ahead, to the next column in its heading; with Drive::Omni and Drive::Legged also straight to the left;
 /// - a curve ahead, to the next heading or the one before. If m is the straight way at the first heading, and n the one
-///   at the last heading, it leads from column A to column A + m + n, along the quadratic Bezier curve with the control
-///   points A, A + m and A + m + n. The robot looks along the curve.
+///   at the last heading, it leads from column A to column A + i m + k n. The corner between both lines is replaced by
+///   an arc that touches them, as large as possible. The robot looks along the curve. For a car, i and k are the least
+///   numbers with which the radius of the arc is at least its turning radius; for others they are 1.
 ///
 /// The robot can go if
 ///
@@ -61,11 +59,13 @@ struct ReachPlace {
 ///   something between d * s and d * t, where d is the distance, and s and t are the slopes at both columns, in the
 ///   direction of the other one, measured over 1 mm. What it rises more or less than that is the step. Slopes steeper
 ///   than StandLimits::max_slope count as 0, so they are steps. In a curve, there are two steps: to the column A + m,
-///   and from there. The robot must also stand there, at the first or the last heading;
+///   and from there. The robot must also stand there, at the first or the last heading. Curves of cars are cut into
+///   pieces of at most a step of the grid, at whose ends the robot must stand; each piece is a way of its own;
 /// - the robot meets no surface on the way. For that, it is raised by StandLimits::lift. If it meets something then, it
 ///   is raised by max_step, if it can be raised by so much at both ends. Each convex part of it covers the convex hull
 ///   of the part at both poses. If the heading changes, or if roll or pitch change by more than 0.1 rad, the way has
-///   four such pieces; z, roll and pitch change evenly.
+///   four such pieces; z, roll and pitch change evenly. If these hulls meet something, and the robot tilts, it has so
+///   many pieces that no point of the robot moves by more than 1 cm in a piece because it tilts.
 ///
 /// If a column has several layers with a state at the heading, a way leads to the one with the smallest step.
 ///
@@ -98,6 +98,10 @@ public:
 private:
     std::shared_ptr<const Impl> impl_;
 };
+
+/// Returns options with all values. Throws ArgumentError for values beyond their limits, and if a legged robot has no
+/// max_step or a car no turning_radius.
+SPAWNFIELD_API ReachOptions with_defaults(const ReachOptions& options, const Robot& robot);
 
 /// Returns a quarter of the smallest width of the robot, seen from above, m: half of the inscribed radius of its
 /// footprint.

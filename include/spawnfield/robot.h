@@ -5,7 +5,9 @@
 #include <spawnfield/shape.h>
 
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace spawnfield {
@@ -36,6 +38,28 @@ struct MeshFit {
     }
 };
 
+/// How a robot moves on the ground. ReachGraph says which ways each of them has.
+enum class Drive : std::uint8_t {
+    Differential,  ///< straight ahead and back, and it turns on the spot
+    Omni,          ///< also to the sides
+    Legged,        ///< as Omni; it climbs steps of a height that its owner must say
+    Car            ///< straight ahead and back, and in curves of a smallest radius; it cannot turn on the spot
+};
+
+/// The names of the drives in files and options, in their order.
+inline constexpr std::initializer_list<const char*> drive_names{"differential", "omni", "legged", "car"};
+SPAWNFIELD_API const char* name_of(Drive drive);
+/// Throws ArgumentError for another name.
+SPAWNFIELD_API Drive drive_called(const std::string& name);
+
+/// What a robot's file says about how it drives.
+struct RobotDrive {
+    std::optional<Drive> kind = {};
+    std::optional<double> max_step = {};        ///< m, >= 0; see ReachOptions
+    std::optional<double> turning_radius = {};  ///< m, > 0; only for a car
+    std::optional<double> wheel_radius = {};    ///< m, > 0; of its smallest wheel
+};
+
 /// A rigid body: the union of convex parts, in its own frame. The poses that commands read and write are poses of this
 /// frame.
 struct Robot {
@@ -49,6 +73,9 @@ struct Robot {
     /// The centre of mass in the robot's frame, m: that of robot.yaml, or of all links of a URDF or SDF file that have
     /// an <inertial>. Empty: the file says nothing about it.
     std::optional<Vec3> mass_center = {};
+    /// From the keys of robot.yaml. For a URDF or SDF file, only the wheel radius: the smallest radius of all cylinders
+    /// and spheres of links that can turn without limits about a horizontal axis; for cylinders, it must be their own.
+    RobotDrive drive = {};
 
     SPAWNFIELD_API Bounds bounds() const;
 };

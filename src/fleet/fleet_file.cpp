@@ -176,7 +176,7 @@ FleetFileKind kind_in(const YamlMap& map, const fs::path& folder)
     out.z = given_text(map, "z");
     out.layers = given_text(map, "layers");
     out.island = given_text(map, "island");
-    if (map.has("drive")) out.drive = map.one_of("drive", {"differential", "omni"}, "");
+    if (map.has("drive")) out.drive = map.one_of("drive", drive_names, "");
     out.region = regions_in(map, "region", folder);
     out.keep_out = regions_in(map, "keep_out", folder);
     if (!map.has("formation")) return out;

@@ -5,6 +5,9 @@
 
 #include <spawnfield/joints.h>
 
+#include <map>
+#include <string>
+
 namespace spawnfield {
 
 /// All <collision> elements of a URDF or SDF model, with its joints at given positions. The model is a robot, or a
@@ -15,6 +18,9 @@ struct JointedModel {
     std::vector<std::string> notices;
     double mass = 0;                  ///< of all links with <inertial>, kg
     Vec3 mass_moment = Vec3::Zero();  ///< the sum of their masses times their centres of mass, kg m
+
+    /// By the name of a link: the axis about which it can turn without limits, in the frame of the model.
+    std::map<std::string, Vec3> axles = {};
 
     void add_mass(double kilograms, const Vec3& centre)
     {

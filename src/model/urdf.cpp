@@ -152,10 +152,18 @@ private:
             for (auto joint = link->child_joints.rbegin(); joint != link->child_joints.rend(); ++joint)
                 for (const auto& child : link->child_links)
                     if (child->name == (*joint)->child_link_name)
-                        open.emplace_back(child.get(), robot_from_link *
-                                                           pose_of((*joint)->parent_to_joint_origin_transform) *
-                                                           motion_of(*link, **joint));
+                        open.emplace_back(child.get(), robot_from_child(*link, robot_from_link, **joint));
         }
+    }
+
+    /// Returns the pose of the link at the other end of a joint. Adds its axle if it can turn without limits.
+    Pose robot_from_child(const urdf::Link& link, const Pose& robot_from_link, const urdf::Joint& joint)
+    {
+        const Pose robot_from_joint = robot_from_link * pose_of(joint.parent_to_joint_origin_transform);
+        if (joint.type == urdf::Joint::CONTINUOUS)
+            out_.axles[joint.child_link_name] = robot_from_joint.rotation *
+                                                Vec3(joint.axis.x, joint.axis.y, joint.axis.z);
+        return robot_from_joint * motion_of(link, joint);
     }
 
     void add_collisions(const urdf::Link& link, const Pose& robot_from_link)

@@ -5,36 +5,25 @@
 #include <cmath>
 
 namespace spawnfield {
-namespace {
-
-constexpr int band = 16;  // rows whose states are found before the ways between them
-
-}  // namespace
-
-double longest_way()
-{
-    double out = 0;
-    for (int heading = 0; heading < lattice_headings; ++heading)
-        out = std::max(out, way_end(Way::Left, heading).move.length());
-    return out;
-}
-
 GraphBuilder::GraphBuilder(ReachGraph::Impl& graph)
-    : graph_(graph), keeps_ways_(graph.keep == ReachGraph::Impl::Keep::Ways), rows_(std::size_t(graph.grid.rows))
+    : graph_(graph), keeps_ways_(graph.keep == ReachGraph::Impl::Keep::Ways),
+      is_car_(graph.options.drive == Drive::Car), rows_(std::size_t(graph.grid.rows))
 {
     for (const bool is_open : {true, false})
         for (const Way way : {Way::Ahead, Way::Turn, Way::Left, Way::Right, Way::Aside})
-            if (way != Way::Aside || graph.options.drive == Drive::Omni) passes_.push_back({way, is_open});
+            if ((way != Way::Turn || !is_car_) && (way != Way::Aside || goes_aside(*graph.options.drive)))
+                passes_.push_back({way, is_open});
 }
 
 DisjointSets GraphBuilder::run()
 {
-    const int threads = graph_.options.threads, rows = graph_.grid.rows;
+    const int threads = graph_.options.threads, rows = graph_.grid.rows, longest = graph_.lattice.longest_rows();
+    const int band = std::max(16, 2 * longest);  // rows whose states are found before the ways between them
     graph_.first.assign(1, 0);
     graph_.first_node.assign(1, 0);
     int done = 0;  // rows whose ways are known
     for (int begin = 0; begin < rows; begin += band) {
-        const int end = std::min(rows, begin + band), ready = end < rows ? end - longest_way_rows : end;
+        const int end = std::min(rows, begin + band), ready = end < rows ? end - longest : end;
         const auto report = [&](double share) {
             if (graph_.options.progress) graph_.options.progress((begin + share * (end - begin)) / rows);
         };
@@ -43,8 +32,7 @@ DisjointSets GraphBuilder::run()
         for (const Pass& pass : passes_)
             parallel_for(std::size_t(ready - done), threads, {}, [&](std::size_t k) { join_row(done + int(k), pass); });
         done = ready;
-        for (int row = std::max(0, begin - band - longest_way_rows); row < done - longest_way_rows; ++row)
-            rows_[std::size_t(row)] = {};
+        for (int row = std::max(0, begin - band - longest); row < done - longest; ++row) rows_[std::size_t(row)] = {};
     }
     return std::move(nodes_);
 }
@@ -82,13 +70,14 @@ void GraphBuilder::append(const StateRow& row)
         graph_.ground.push_back(place.ground);
         graph_.valid.push_back(place.valid);
         graph_.first_node.push_back(graph_.first_node.back() +
-                                    (place.is_open ? 1 : std::uint32_t(std::popcount(place.valid))));
+                                    (place.is_open && !is_car_ ? 1 : std::uint32_t(std::popcount(place.valid))));
     }
     nodes_.grow(graph_.first_node.back());
     if (!keeps_ways_) return;
     ReachGraph::Impl::Ways none;
     none.fill(ReachGraph::Impl::nowhere);
     for (const Pass& pass : passes_) graph_.ways[std::size_t(pass.way)].resize(graph_.ground.size(), none);
+    graph_.ways[std::size_t(Way::Turn)].resize(graph_.ground.size(), none);
 }
 
 void GraphBuilder::join_row(int row, const Pass& pass)
@@ -104,29 +93,57 @@ void GraphBuilder::join_row(int row, const Pass& pass)
 /// Joins a state and the one to which a way leads, if there is one.
 void GraphBuilder::examine(WayJudge& judge, const PlaceAt& from, int heading, const Pass& pass)
 {
-    const WayEnd end = way_end(pass.way, heading);
     if (!keeps_ways_ && !may_join(judge, from, heading, pass.way)) return;
-    const std::optional<PlaceAt> to = end_of(judge, from, heading, pass.way);
+    const auto to = is_car_ && is_curve(pass.way) ? end_of_car_curve(judge, from, heading, pass)
+                                                  : end_of_way(judge, from, heading, pass);
     if (!to || to->index >= ReachGraph::Impl::nowhere) return;
-    const StateAt start{position(from.col, from.row), place(from), heading},
-        goal{position(to->col, to->row), place(*to), end.heading};
-    if (judge.is_open(start, goal) != pass.is_open || (!pass.is_open && !judge.can_go(start, goal, pass.way))) return;
-    nodes_.join(node_of(from, heading), node_of(*to, end.heading));
+    nodes_.join(node_of(from, heading), node_of(*to, graph_.lattice.end(pass.way, heading).heading));
     if (keeps_ways_)
         graph_.ways[std::size_t(pass.way)][number_of(from)][std::size_t(heading)] = std::uint8_t(to->index);
+}
+
+/// Returns the place to which the robot can go on a way, if this pass is for it.
+std::optional<GraphBuilder::PlaceAt> GraphBuilder::end_of_way(WayJudge& judge, const PlaceAt& from, int heading,
+                                                              const Pass& pass) const
+{
+    const auto to = end_of_ground(judge, from, heading, pass.way);
+    if (!to) return std::nullopt;
+    const StateAt start = state_at(from, heading), goal = state_at(*to, graph_.lattice.end(pass.way, heading).heading);
+    const bool is_open = judge.is_open(start, goal);
+    return is_open == pass.is_open && (is_open || judge.can_go(start, goal, pass.way)) ? to : std::nullopt;
+}
+
+/// The same for a curve of a car.
+std::optional<GraphBuilder::PlaceAt> GraphBuilder::end_of_car_curve(WayJudge& judge, const PlaceAt& from, int heading,
+                                                                    const Pass& pass) const
+{
+    const WayEnd& end = graph_.lattice.end(pass.way, heading);
+    const int col = from.col + end.move.cols, row = from.row + end.move.rows;
+    const std::span<const PlaceStates> others = places_at(col, row);
+    if (others.empty()) return std::nullopt;
+    const StateAt start = state_at(from, heading);
+    if (others.size() == 1 && judge.is_open(start, state_at({col, row, 0}, end.heading)))
+        return pass.is_open && has_heading(others[0].valid, end.heading) ? std::optional(PlaceAt{col, row, 0})
+                                                                         : std::nullopt;
+    if (pass.is_open) return std::nullopt;
+    const std::vector<SettledPose> stops = judge.follow(start, state_at({col, row, 0}, end.heading), pass.way,
+                                                        judge.pieces_of_curve(pass.way, heading));
+    for (std::size_t k = 0; k < others.size() && !stops.empty(); ++k)
+        if (others[k].ground == stops.back().ground->height) return PlaceAt{col, row, k};
+    return std::nullopt;
 }
 
 /// Returns whether a way may lead to a state that is not joined with this one.
 bool GraphBuilder::may_join(const WayJudge& judge, const PlaceAt& from, int heading, Way way)
 {
-    const WayEnd end = way_end(way, heading);
+    const WayEnd& end = graph_.lattice.end(way, heading);
     const std::uint32_t node = node_of(from, heading);
     const auto is_new = [&](const PlaceAt& to) {
         return has_heading(place(to).valid, end.heading) && !nodes_.are_joined(node, node_of(to, end.heading));
     };
     if (way == Way::Turn) return is_new(from);
     const int col = from.col + end.move.cols, row = from.row + end.move.rows;
-    const double largest_rise = judge.largest_rise(end.move.length() * graph_.grid.step);
+    const double largest_rise = judge.largest_rise(way, heading);
     for (std::size_t k = 0; k < places_at(col, row).size(); ++k)
         if (const PlaceAt to{col, row, k};
             std::abs(place(to).ground - place(from).ground) <= largest_rise && is_new(to))
@@ -136,10 +153,10 @@ bool GraphBuilder::may_join(const WayJudge& judge, const PlaceAt& from, int head
 
 /// Returns the place to which the ground leads on a way, at whose end the robot stands there. In a curve, the robot
 /// must also stand where the straight ways of both headings meet.
-std::optional<GraphBuilder::PlaceAt> GraphBuilder::end_of(WayJudge& judge, const PlaceAt& from, int heading,
-                                                          Way way) const
+std::optional<GraphBuilder::PlaceAt> GraphBuilder::end_of_ground(WayJudge& judge, const PlaceAt& from, int heading,
+                                                                 Way way) const
 {
-    const WayEnd end = way_end(way, heading);
+    const WayEnd& end = graph_.lattice.end(way, heading);
     if (way == Way::Turn) return has_heading(place(from).valid, end.heading) ? std::optional(from) : std::nullopt;
     const auto next = [&](const PlaceAt& start, int direction, int at_heading) -> std::optional<PlaceAt> {
         const LatticeMove move = lattice_move(direction);

@@ -52,16 +52,16 @@ private:
     void join_row(int row, const Pass& pass);
     void examine(WayJudge& judge, const PlaceAt& from, int heading, const Pass& pass);
     bool may_join(const WayJudge& judge, const PlaceAt& from, int heading, Way way);
-    std::optional<PlaceAt> end_of(WayJudge& judge, const PlaceAt& from, int heading, Way way) const;
+    StateAt state_at(const PlaceAt& at, int heading) const { return {position(at.col, at.row), place(at), heading}; }
+    std::optional<PlaceAt> end_of_ground(WayJudge& judge, const PlaceAt& from, int heading, Way way) const;
+    std::optional<PlaceAt> end_of_way(WayJudge& judge, const PlaceAt& from, int heading, const Pass& pass) const;
+    std::optional<PlaceAt> end_of_car_curve(WayJudge& judge, const PlaceAt& from, int heading, const Pass& pass) const;
 
     ReachGraph::Impl& graph_;
-    const bool keeps_ways_;
+    const bool keeps_ways_, is_car_;
     std::vector<Pass> passes_;
     std::vector<StateRow> rows_;
     DisjointSets nodes_;
 };
-
-/// Returns the length of the longest way, in steps of the grid.
-double longest_way();
 
 }  // namespace spawnfield

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Raise this if the places, nodes or islands of the same map and robot change, or the bytes of the file.
-constexpr std::uint32_t graph_version = 1;
+constexpr std::uint32_t graph_version = 2;
 constexpr std::string_view magic = "spawnfield-reach";
 constexpr std::size_t checksum_size = 16;
 
@@ -41,8 +41,9 @@ void put(BinaryWriter& out, const RobotPart& part)
 }
 
 /// Returns a hash of everything on which a graph depends, except the files of the map.
-std::string key_of(const Judge& judge, const ReachOptions& options)
+std::string key_of(const Judge& judge, const ReachOptions& given)
 {
+    const ReachOptions options = with_defaults(given, judge.robot());
     BinaryWriter out;
     out.put(graph_version);
     out.put_text(version());
@@ -61,9 +62,11 @@ std::string key_of(const Judge& judge, const ReachOptions& options)
         out.put(limit);
     out.put(std::uint8_t(stand.drop.has_value()));
     out.put(stand.drop.value_or(0));
-    out.put(std::uint8_t(options.drive));
-    out.put(options.max_step);
-    out.put(options.step.value_or(auto_reach_step(judge.robot())));
+    out.put(std::uint8_t(*options.drive));
+    out.put(*options.max_step);
+    out.put(options.turning_radius.value_or(0));
+    out.put(*options.step);
+    out.put(std::uint8_t(options.keep_ways));
     return checksum(out.take());
 }
 
@@ -93,30 +96,48 @@ std::string values_in(std::string_view file)
 fs::path kept_graph_file(const Judge& judge, const ReachOptions& options)
 {
     const Map& map = judge.map();
-    if (map.folder.empty() || map.hash.empty() || judge.impl().options.exhaustive || options.keep_ways) return {};
+    if (map.folder.empty() || map.hash.empty() || judge.impl().options.exhaustive) return {};
     return map.folder / ("reach-" + map.hash + "-" + key_of(judge, options) + ".bin");
 }
 
-KeptGraph kept_graph(const Judge& judge, const ReachOptions& options)
+namespace {
+
+/// Reads a kept graph. Returns nothing if there is none. Adds a notice if it cannot be used.
+std::optional<ReachGraph> read_kept(const Judge& judge, const ReachOptions& options, std::string& notice)
 {
     using Impl = ReachGraph::Impl;
     const fs::path file = kept_graph_file(judge, options);
+    if (!fs::exists(file)) return std::nullopt;
+    try {
+        const auto keep = options.keep_ways ? Impl::Keep::Ways : Impl::Keep::Islands;
+        return ReachGraph(std::make_shared<const Impl>(judge, options, keep, values_in(read_file(file))));
+    } catch (const std::exception& error) {
+        notice = file.string() + ": the kept graph cannot be used: " + error.what() + "; it is built again";
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
+KeptGraph kept_graph(const Judge& judge, const ReachOptions& options)
+{
+    const fs::path file = kept_graph_file(judge, options);
     if (file.empty()) return {ReachGraph(judge, options)};
     std::string notice;
-    if (fs::exists(file)) {
-        try {
-            return {ReachGraph(std::make_shared<const Impl>(judge, options, values_in(read_file(file)))), true, ""};
-        } catch (const std::exception& error) {
-            notice = file.string() + ": the kept graph cannot be used: " + error.what() + "; it is built again";
-        }
+    if (auto graph = read_kept(judge, options, notice)) return {*std::move(graph), true, ""};
+    if (!options.keep_ways) {  // a graph with ways contains the islands, too
+        ReachOptions with_ways = options;
+        with_ways.keep_ways = true;
+        std::string ignored;
+        if (auto graph = read_kept(judge, with_ways, ignored)) return {*std::move(graph), true, notice};
     }
-    const auto graph = std::make_shared<const Impl>(judge, options);
+    ReachGraph graph(judge, options);
     try {
-        write_file_atomically(file, file_bytes(*graph));
+        write_file_atomically(file, file_bytes(*graph.impl()));
     } catch (const OutputError& error) {
         notice = std::string("the graph is not kept, and will be built again next time: ") + error.what();
     }
-    return {ReachGraph(graph), false, notice};
+    return {std::move(graph), false, notice};
 }
 
 }  // namespace spawnfield

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 
 namespace spawnfield {
 
@@ -17,6 +18,7 @@ struct LatticeMove {
 
     double length() const { return std::hypot(double(cols), double(rows)); }  ///< in steps of the grid
     constexpr LatticeMove operator+(const LatticeMove& other) const { return {cols + other.cols, rows + other.rows}; }
+    constexpr LatticeMove operator*(int times) const { return {times * cols, times * rows}; }
 };
 
 /// Returns the heading that follows after some more, counterclockwise.
@@ -51,27 +53,52 @@ enum class Way : std::uint8_t {
 };
 inline constexpr std::size_t way_count = 5;
 
+inline constexpr std::array all_ways{Way::Ahead, Way::Left, Way::Right, Way::Aside, Way::Turn};
+inline bool is_curve(Way way) { return way == Way::Left || way == Way::Right; }
+
 /// Where a way leads.
 struct WayEnd {
     LatticeMove move;
     int heading;
 };
 
-/// Returns where a way leads that begins at a heading.
-constexpr WayEnd way_end(Way way, int heading)
-{
-    const int next = lattice_heading(heading, 1), before = lattice_heading(heading, -1);
-    switch (way) {
-    case Way::Left: return {lattice_move(heading) + lattice_move(next), next};
-    case Way::Right: return {lattice_move(heading) + lattice_move(before), before};
-    case Way::Aside: return {lattice_move(to_the_left(heading)), heading};
-    case Way::Turn: return {{0, 0}, next};
-    case Way::Ahead: break;
-    }
-    return {lattice_move(heading), heading};
-}
+/// A line, an arc that touches both lines, and a line; one of the lines has the length 0.
+struct Curve {
+    double first, arc, last;  ///< lengths
+    double turn;              ///< angle of the arc, > 0, rad
 
-inline constexpr int longest_way_rows = 3;  ///< largest number of rows that a way leads up or down
+    double length() const { return first + arc + last; }
+    double radius() const { return arc / turn; }
+};
+
+/// Returns the curve in a corner between two straight lines with these lengths. `turn`: the angle between their
+/// directions, 0 .. pi. The arc is as large as the shorter line admits.
+Curve curve_in_corner(double length, double next_length, double turn);
+
+/// The ways of a drivable graph. A curve leads along some moves at its first heading to a corner, and along some moves
+/// at its last heading from there, as seen from above; the robot drives along curve_in_corner() of these two lines.
+class Lattice {
+public:
+    /// `turning_radius`: of all curves at least, in steps of the grid. With 0, there is one move to the corner, and one
+    /// from there.
+    explicit Lattice(double turning_radius = 0);
+
+    const WayEnd& end(Way way, int heading) const { return ends_[std::size_t(way)][std::size_t(heading)]; }
+    /// Returns the way from a column to the corner of a curve.
+    LatticeMove corner(Way way, int heading) const;
+    Curve curve(Way way, int heading) const;         ///< lengths in steps of the grid
+    double length(Way way, int heading) const;       ///< seen from above, in steps of the grid
+    double longest() const { return longest_; }      ///< largest distance between the ends of a way, steps of the grid
+    int longest_rows() const { return most_rows_; }  ///< largest number of rows that a way leads up or down
+
+private:
+    int moves(int heading, int other) const;
+
+    double turning_radius_;
+    std::array<std::array<WayEnd, lattice_headings>, way_count> ends_;
+    double longest_ = 0;
+    int most_rows_ = 0;
+};
 
 /// A set of headings; bit k is heading k.
 using HeadingSet = std::uint16_t;

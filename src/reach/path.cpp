@@ -19,6 +19,8 @@ PathCost most_cost(double longest)
     return PathCost(std::ceil(std::min(longest, largest) / nanometre)) + 1;
 }
 
+int heading_of(PathGraph::StateId state) { return int(state % lattice_headings); }
+
 }  // namespace
 
 PathSearch::Impl::Impl(std::shared_ptr<const PathGraph> graph)
@@ -143,18 +145,44 @@ PathCost PathSearch::Impl::cost_between(StateId from, StateId to) const
     return out;
 }
 
+/// Returns the stops of a car on a curve between two states, without these.
+std::vector<Stop> PathSearch::Impl::stops_on_curve(StateId from, StateId to) const
+{
+    const Vec3 way = graph_->ground_of(to) - graph_->ground_of(from);
+    const LatticeMove ahead = lattice_move(heading_of(from));
+    if (way.x() * ahead.cols + way.y() * ahead.rows < 0) {  // back: the curve begins at the other end
+        std::vector<Stop> out = stops_on_curve(to, from);
+        std::reverse(out.begin(), out.end());
+        return out;
+    }
+    const PlaceStates begin{.ground = graph_->ground_of(from).z()}, end{.ground = graph_->ground_of(to).z()};
+    const Way turn = heading_of(to) == lattice_heading(heading_of(from), 1) ? Way::Left : Way::Right;
+    WayJudge& judge = graph_->graph().way_judges.local();
+    const std::vector<SettledPose> poses = judge.follow({graph_->ground_of(from).head<2>(), begin, heading_of(from)},
+                                                        {graph_->ground_of(to).head<2>(), end, heading_of(to)}, turn,
+                                                        judge.pieces_of_curve(turn, heading_of(from)));
+    std::vector<Stop> out;
+    for (std::size_t k = 0; k + 1 < poses.size(); ++k)
+        out.push_back({{poses[k].position.x(), poses[k].position.y(), poses[k].ground->height}, poses[k].yaw});
+    return out;
+}
+
 ShortPath PathSearch::Impl::path(const End& start, const End& goal, bool shorten)
 {
+    const bool is_car = graph_->graph().options.drive == Drive::Car;
     std::vector<Stop> stops{start.stop};
     std::vector<double> lengths{start.length};
     const std::vector<StateId> found = states();
     for (std::size_t k = 0; k < found.size(); ++k) {
-        stops.push_back({graph_->ground_of(found[k]), lattice_yaw(int(found[k] % lattice_headings))});
-        if (k + 1 < found.size()) lengths.push_back(double(cost_between(found[k], found[k + 1])) * nanometre);
+        stops.push_back({graph_->ground_of(found[k]), lattice_yaw(heading_of(found[k]))});
+        if (k + 1 == found.size()) break;
+        lengths.push_back(double(cost_between(found[k], found[k + 1])) * nanometre);
+        if (is_car && heading_of(found[k]) != heading_of(found[k + 1]))
+            for (Stop& stop : stops_on_curve(found[k], found[k + 1])) stops.push_back(std::move(stop));
     }
     stops.push_back(goal.stop);
     lengths.push_back(goal.length);
-    if (shorten) return shortened(graph_->graph(), stops, lengths);
+    if (shorten && !is_car) return shortened(graph_->graph(), stops, lengths);
     const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
     return {std::move(stops), length};
 }

@@ -11,19 +11,6 @@
 namespace spawnfield {
 namespace {
 
-/// Returns the length of a quadratic Bezier curve whose control points have these lines between them. They must not be
-/// parallel. Along the curve, its derivative is 2 (first + t bend).
-double bezier_length(const Vec2& first, const Vec2& second)
-{
-    const Vec2 bend = second - first;
-    const double size = bend.norm(), begin = first.dot(bend) / (size * size),
-                 aside = std::abs(first.x() * second.y() - first.y() * second.x()) / (size * size);
-    const auto integral = [&](double u) {  // of sqrt(u^2 + aside^2)
-        return (u * std::hypot(u, aside) + aside * aside * std::asinh(u / aside)) / 2;
-    };
-    return 2 * size * (integral(begin + 1) - integral(begin));
-}
-
 Vec2 vector_of(const LatticeMove& move) { return {double(move.cols), double(move.rows)}; }
 
 /// The shapes of all ways are among those that begin at the headings 0 to 2. They are counted as in shape_way().
@@ -48,9 +35,10 @@ std::pair<Way, int> shape_way(int shape)
 /// of a path on that side is its length.
 std::array<Vec2, 4> sides_of_unit_circle()
 {
-    const auto corner = [](int k) {  // straight ahead, curve, straight ahead, ...; counterclockwise
+    const Lattice lattice;
+    const auto corner = [&](int k) {  // straight ahead, curve, straight ahead, ...; counterclockwise
         const Way way = k % 2 == 0 ? Way::Ahead : Way::Left;
-        return std::pair(vector_of(way_end(way, k / 2).move), way_length(way, k / 2));
+        return std::pair(vector_of(lattice.end(way, k / 2).move), lattice.length(way, k / 2));
     };
     std::array<Vec2, 4> out;
     for (int k = 0; k < 4; ++k) {
@@ -64,13 +52,6 @@ std::array<Vec2, 4> sides_of_unit_circle()
 }
 
 }  // namespace
-
-double way_length(Way way, int heading)
-{
-    const WayEnd end = way_end(way, heading);
-    if (way != Way::Left && way != Way::Right) return end.move.length();
-    return bezier_length(vector_of(lattice_move(heading)), vector_of(lattice_move(end.heading)));
-}
 
 double open_length(int cols, int rows)
 {
@@ -90,7 +71,7 @@ PathGraph::PathGraph(std::shared_ptr<const ReachGraph::Impl> graph) : graph_(std
         throw ArgumentError("PathSearch", "the graph does not keep its ways; build it with ReachOptions::keep_ways");
     for (std::size_t shape = 0; shape < shapes; ++shape) {
         const auto [way, heading] = shape_way(int(shape));
-        lengths_[shape] = graph_->grid.step * way_length(way, heading);
+        lengths_[shape] = graph_->grid.step * graph_->lattice.length(way, heading);
         level_costs_[shape] = path_cost(lengths_[shape], 0);
     }
     find_groups();
@@ -151,7 +132,9 @@ PathCost PathGraph::at_least(Group from, Group to) const
 {
     constexpr double rounding = 1e-12;  // of the length
     const Spot &begin = spots_[from], &end = spots_[to];
-    const double length = open_length(end.col - begin.col, end.row - begin.row) * graph_->grid.step,
+    const int cols = end.col - begin.col, rows = end.row - begin.row;
+    const bool turns = graph_->options.drive != Drive::Car;
+    const double length = (turns ? open_length(cols, rows) : std::hypot(cols, rows)) * graph_->grid.step,
                  rise = end.ground - begin.ground;
     return PathCost((rise == 0 ? length : std::hypot(length, rise)) * (1 - rounding) / nanometre);
 }
@@ -167,14 +150,14 @@ void PathGraph::for_each_moving_neighbour(StateId state, Way way, const Visit& v
     const Spot& spot = spot_of(state);
     const int heading = int(state % lattice_headings);
     if (const std::uint8_t index = ways[place][std::size_t(heading)]; index != ReachGraph::Impl::nowhere) {
-        const WayEnd end = way_end(way, heading);
+        const WayEnd end = graph_->lattice.end(way, heading);
         const std::size_t other = graph_->first[graph_->column_of(spot.col + end.move.cols, spot.row + end.move.rows)] +
                                   index;
         visit(StateId(other) * lattice_headings + StateId(end.heading), shape_of(way, heading));
     }
     // Back: a curve to the left that ends at this heading began at the one before.
     const int begin = lattice_heading(heading, way == Way::Left ? -1 : way == Way::Right ? 1 : 0);
-    const LatticeMove move = way_end(way, begin).move;
+    const LatticeMove move = graph_->lattice.end(way, begin).move;
     const int from_col = spot.col - move.cols, from_row = spot.row - move.rows;
     if (from_col < 0 || from_row < 0 || from_col >= grid.cols || from_row >= grid.rows) return;
     const std::size_t here = place - graph_->first[graph_->column_of(spot.col, spot.row)],

@@ -13,11 +13,8 @@ namespace spawnfield {
 using PathCost = std::int64_t;
 inline constexpr double nanometre = 1e-9;  ///< m
 
-/// Returns the length of a way that begins at a heading, seen from above, in steps of the grid.
-double way_length(Way way, int heading);
-
 /// Returns the length of the shortest path in the open to another column, seen from above, in steps of the grid: at
-/// least the straight line, and at most 2.8 % longer. No path is shorter.
+/// least the straight line, and at most 2 % longer. No path of a robot that turns on the spot is shorter.
 double open_length(int cols, int rows);
 
 /// Returns the cost of a way with this length seen from above over ground that rises, both in m. Rounds the length up.
@@ -48,8 +45,8 @@ public:
             visit(leg_ends_[leg], leg_cost(spots_[from], spots_[leg_ends_[leg]], leg_shapes_[leg]));
     }
 
-    /// Returns a cost that no path between two groups falls short of: that over open ground which rises evenly, without
-    /// rounding errors.
+    /// Returns a cost that no path between two groups falls short of: that over open ground which rises evenly, of a
+    /// car in a straight line; without rounding errors.
     PathCost at_least(Group from, Group to) const;
 
     struct Neighbour {

@@ -69,6 +69,7 @@ private:
         return is_reached(from) && labels_[from].cost + cost == labels_[to].cost;
     }
     PathCost cost_between(StateId from, StateId to) const;
+    std::vector<Stop> stops_on_curve(StateId from, StateId to) const;
     bool expand(PathCost most, Group until);
     std::vector<Group> groups_on_shortest_paths();
 

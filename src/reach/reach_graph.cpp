@@ -1,6 +1,7 @@
 #include "reach/reach_graph.h"
 
 #include "base/binary.h"
+#include "base/number.h"
 #include "base/polygon2.h"
 #include "reach/graph_builder.h"
 #include "settle/convex.h"
@@ -15,6 +16,11 @@
 #include <utility>
 
 namespace spawnfield {
+namespace {
+
+constexpr double largest_turning_radius = 100;  // m
+
+}  // namespace
 
 double auto_reach_step(const Robot& robot)
 {
@@ -30,16 +36,43 @@ double auto_reach_step(const Robot& robot)
     return width(convex_hull(std::move(outline))) / 4;
 }
 
+ReachOptions with_defaults(const ReachOptions& options, const Robot& robot)
+{
+    constexpr const char* function = "ReachGraph";
+    const RobotDrive& own = robot.drive;
+    ReachOptions out = options;
+    out.drive = options.drive ? options.drive : own.kind.value_or(Drive::Differential);
+    const bool is_car = out.drive == Drive::Car;
+    if (!out.step) out.step = auto_reach_step(robot);
+    if (!out.max_step) out.max_step = own.max_step;
+    if (!out.max_step && out.drive == Drive::Legged)
+        throw ArgumentError(function,
+                            "a legged robot needs the largest step that it climbs: --max-step, or max_step in "
+                            "robot.yaml, m");
+    if (!out.max_step) out.max_step = own.wheel_radius ? *own.wheel_radius / 4 : 0.03;
+    if (out.turning_radius && !is_car)
+        throw ArgumentError(function,
+                            "turning_radius is only for a car; the drive is " + std::string(name_of(*out.drive)));
+    if (is_car && !out.turning_radius) out.turning_radius = own.turning_radius;
+    if (is_car && !out.turning_radius)
+        throw ArgumentError(function,
+                            "a car needs the smallest radius of its curves: --turning-radius, or "
+                            "turning_radius in robot.yaml, m");
+    if (!(*out.step > 0) || !std::isfinite(*out.step)) throw ArgumentError(function, "step", *out.step, "> 0 m");
+    if (!(*out.max_step >= 0) || !std::isfinite(*out.max_step))
+        throw ArgumentError(function, "max_step", *out.max_step, ">= 0 m");
+    if (is_car && !(*out.turning_radius > 0 && *out.turning_radius <= largest_turning_radius))
+        throw ArgumentError(function, "turning_radius", *out.turning_radius,
+                            "> 0 m, at most " + number(largest_turning_radius) + " m");
+    return out;
+}
+
 ReachGraph::Impl::Impl(const Judge& judge_, const ReachOptions& options_, Keep keep_, Empty)
-    : judge(judge_), options(options_), keep(keep_),
-      way_judges([this] { return WayJudge(judge.impl(), options.max_step, longest_way() * grid.step); })
+    : judge(judge_), options(with_defaults(options_, judge.robot())),
+      lattice(options.turning_radius.value_or(0) / *options.step), keep(keep_),
+      way_judges([this] { return WayJudge(judge.impl(), *options.max_step, lattice, grid.step); })
 {
     judge.impl().settler();  // throws if the obstacles are voxels
-    if (!options.step) options.step = auto_reach_step(judge.robot());
-    if (!(*options.step > 0) || !std::isfinite(*options.step))
-        throw ArgumentError("ReachGraph", "step", *options.step, "> 0 m");
-    if (!(options.max_step >= 0) || !std::isfinite(options.max_step))
-        throw ArgumentError("ReachGraph", "max_step", options.max_step, ">= 0 m");
     grid = raster_grid(judge.map().bounds, {.step = *options.step});
 }
 
@@ -63,11 +96,12 @@ std::string ReachGraph::Impl::bytes() const
         for (const double value :
              {island.area, island.share, island.place.x(), island.place.y(), island.place.z(), island.low, island.high})
             out.put(value);
+    for (const std::vector<Ways>& of_kind : ways) out.put_array(of_kind);
     return out.take();
 }
 
-ReachGraph::Impl::Impl(const Judge& judge_, const ReachOptions& options_, std::string_view bytes)
-    : Impl(judge_, options_, Keep::Islands, Empty())
+ReachGraph::Impl::Impl(const Judge& judge_, const ReachOptions& options_, Keep keep_, std::string_view bytes)
+    : Impl(judge_, options_, keep_, Empty())
 {
     BinaryReader in(bytes);
     first = in.get_array<std::uint32_t>();
@@ -81,6 +115,7 @@ ReachGraph::Impl::Impl(const Judge& judge_, const ReachOptions& options_, std::s
                                     &island.place.z(), &island.low, &island.high})
             *value = in.get<double>();
     }
+    for (std::vector<Ways>& of_kind : ways) of_kind = in.get_array<Ways>();
     if (!is_consistent()) throw std::runtime_error("its numbers do not fit each other");
 }
 
@@ -95,13 +130,40 @@ bool ReachGraph::Impl::is_consistent() const
         const std::uint32_t nodes = first_node[p + 1] - first_node[p];  // wraps around if they are not ascending
         if (valid[p] == 0 || (nodes != 1 && nodes != std::uint32_t(std::popcount(valid[p])))) return false;
     }
-    return std::ranges::all_of(node_islands, [&](std::uint32_t island) { return island < islands.size(); });
+    for (const Way way : all_ways) {
+        const bool is_kept = keep == Keep::Ways && (way != Way::Aside || goes_aside(*options.drive));
+        if (ways[std::size_t(way)].size() != (is_kept ? places : 0)) return false;
+    }
+    return std::ranges::all_of(node_islands, [&](std::uint32_t island) { return island < islands.size(); }) &&
+           are_ways_inside();
+}
+
+/// Returns whether all ways lead to places.
+bool ReachGraph::Impl::are_ways_inside() const
+{
+    for (const Way way : moving_ways) {
+        const std::vector<Ways>& of_kind = ways[std::size_t(way)];
+        for (std::size_t column = 0; column + 1 < first.size() && !of_kind.empty(); ++column)
+            for (std::size_t place = first[column]; place < first[column + 1]; ++place)
+                for (int heading = 0; heading < lattice_headings; ++heading) {
+                    const std::uint8_t index = of_kind[place][std::size_t(heading)];
+                    if (index == nowhere) continue;
+                    const LatticeMove move = lattice.end(way, heading).move;
+                    const int col = int(column) % grid.cols + move.cols, row = int(column) / grid.cols + move.rows;
+                    if (col < 0 || row < 0 || col >= grid.cols || row >= grid.rows) return false;
+                    const std::size_t end = column_of(col, row);
+                    if (index >= first[end + 1] - first[end]) return false;
+                }
+    }
+    return true;
 }
 
 ReachGraph::ReachGraph(const Judge& judge, const ReachOptions& options)
     : impl_(std::make_shared<const Impl>(judge, options, options.keep_ways ? Impl::Keep::Ways : Impl::Keep::Islands))
 {
 }
+
+bool goes_aside(Drive drive) { return drive == Drive::Omni || drive == Drive::Legged; }
 
 const ReachOptions& ReachGraph::options() const { return impl_->options; }
 

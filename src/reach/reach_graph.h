@@ -15,6 +15,9 @@
 
 namespace spawnfield {
 
+/// Returns whether a robot has ways straight to the side.
+bool goes_aside(Drive drive);
+
 /// The states of a drivable graph and its islands, and its ways if they are wanted. A place is a layer of a column at
 /// which the robot stands at one heading or more. A node is a state, or all 16 states of an open place.
 struct ReachGraph::Impl {
@@ -29,6 +32,7 @@ struct ReachGraph::Impl {
 
     Judge judge;
     ReachOptions options;  ///< with all values
+    Lattice lattice;
     const Keep keep;
     RasterGrid grid;
     std::vector<std::uint32_t> first;       ///< first place of each column, row by row; then their number
@@ -40,10 +44,11 @@ struct ReachGraph::Impl {
     std::array<std::vector<Ways>, way_count> ways;  ///< by Way, of each place; empty unless they are kept
 
     Impl(const Judge& judge_, const ReachOptions& options_, Keep keep_ = Keep::Islands);
-    /// Takes places, nodes and islands from bytes(). Throws std::exception if they do not fit the grid, or each other.
-    Impl(const Judge& judge_, const ReachOptions& options_, std::string_view bytes);
+    /// Takes everything from bytes() of a graph that keeps the same. Throws std::exception if the values do not fit the
+    /// grid, or each other.
+    Impl(const Judge& judge_, const ReachOptions& options_, Keep keep_, std::string_view bytes);
 
-    /// Returns the places, nodes and islands as bytes. Ways are not in them.
+    /// Returns the places, nodes and islands as bytes, and the ways if they are kept.
     std::string bytes() const;
 
     std::size_t column_of(int col, int row) const
@@ -92,6 +97,7 @@ private:
     void find_islands(DisjointSets& nodes);
     void set_places();
     bool is_consistent() const;
+    bool are_ways_inside() const;
 };
 
 }  // namespace spawnfield

@@ -71,6 +71,7 @@ private:
             while (beyond - end > 1)
                 if (const std::size_t middle = end + (beyond - end) / 2; !can_reach(middle)) beyond = middle;
         }
+        if (!best.is_straight) can_reach(end);  // a straight way can be cut later
         pieces_.push_back(std::move(best));
         return end;
     }

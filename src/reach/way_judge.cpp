@@ -12,6 +12,9 @@ constexpr double slope_arm = 1e-3;    // m: the slope of the ground at a column 
 constexpr double limit_slack = 1e-9;  // m, in comparisons with limits
 constexpr int turn_pieces = 4;        // of a way on which the robot turns
 constexpr double large_tilt = 0.1;    // rad: if roll or pitch change by more, a way has as many pieces
+constexpr int kink_pieces = 4;        // of a straight way on which the robot is let down between its ends
+/// m: the hull of a robot that tilts between two poses is at most half as much thicker than the robot.
+constexpr double small_motion = 0.01;
 
 /// Returns the direction of a heading, of length 1.
 Vec2 direction_of(int heading)
@@ -22,31 +25,54 @@ Vec2 direction_of(int heading)
 
 StatePose state_of(const SettledPose& pose) { return {.z = pose.position.z(), .roll = pose.roll, .pitch = pose.pitch}; }
 
-Course course_of(const StateAt& from, const StateAt& to, Way way)
+/// Returns into how many pieces a way is cut so that the hulls of the robot are not much larger than what it covers:
+/// few, and if that is not enough, many. `radius`: distance of its farthest point from its origin, m.
+std::array<int, 2> pieces_between(const Course& course, const StatePose& pose, const StatePose& other, double radius)
 {
-    const double yaw = lattice_yaw(from.heading);
-    Course out{.begin = from.at, .end = to.at, .yaw = yaw, .turn = turn_between(yaw, lattice_yaw(to.heading))};
-    if (way != Way::Left && way != Way::Right) return out;
-    const LatticeMove first = lattice_move(from.heading), both = first + lattice_move(to.heading);
-    const double step = (to.at - from.at).norm() / both.length();
-    out.corner = from.at + step * Vec2(first.cols, first.rows);
-    return out;
+    const double tilt = std::max(std::abs(pose.roll - other.roll), std::abs(pose.pitch - other.pitch));
+    const int few = course.turn != 0 || tilt > large_tilt ? turn_pieces : 1;
+    return {few, std::max(few, int(std::ceil(tilt * radius / small_motion)))};
 }
 
 }  // namespace
 
+Curve Course::curve() const
+{
+    return curve_in_corner((*corner - begin).norm(), (end - *corner).norm(), std::abs(turn));
+}
+
+double Course::length() const { return corner ? curve().length() : (end - begin).norm(); }
+
 std::pair<Vec2, double> Course::at(double t) const
 {
     if (!corner) return {begin + t * (end - begin), yaw + t * turn};
-    const Vec2 first = *corner - begin, second = end - *corner, tangent = (1 - t) * first + t * second;
-    return {begin + (2 * t * (1 - t) + t * t) * first + t * t * second, std::atan2(tangent.y(), tangent.x())};
+    const Curve parts = curve();
+    const double driven = t * parts.length();
+    const Vec2 ahead = (*corner - begin).normalized();
+    if (driven <= parts.first) return {begin + driven * ahead, yaw};
+    if (driven >= parts.first + parts.arc)
+        return {end - (parts.length() - driven) * (end - *corner).normalized(), yaw + turn};
+    const double angle = (driven - parts.first) / parts.radius(), side = turn > 0 ? 1 : -1;
+    const Vec2 aside = side * Vec2(-ahead.y(), ahead.x());
+    return {begin + parts.first * ahead + parts.radius() * (std::sin(angle) * ahead + (1 - std::cos(angle)) * aside),
+            yaw + side * angle};
 }
 
-WayJudge::WayJudge(const Judge::Impl& shared, double max_step, double longest_way)
-    : shared_(shared), max_step_(max_step), longest_way_(longest_way), radius_(shared.settler().reach()),
-      steepest_(std::tan(shared.options.stand.max_slope)), stand_(shared), columns_(shared, 0), level_(shared),
-      sweep_(shared.map.geometry, shared.robot)
+WayJudge::WayJudge(const Judge::Impl& shared, double max_step, const Lattice& lattice, double step)
+    : shared_(shared), lattice_(lattice), max_step_(max_step), step_(step), longest_way_(lattice.longest() * step),
+      radius_(shared.settler().reach()), steepest_(std::tan(shared.options.stand.max_slope)), stand_(shared),
+      columns_(shared, 0), level_(shared), sweep_(shared.map.geometry, shared.robot)
 {
+}
+
+Course WayJudge::course_of(const StateAt& from, const StateAt& to, Way way) const
+{
+    const double yaw = lattice_yaw(from.heading);
+    Course out{.begin = from.at, .end = to.at, .yaw = yaw, .turn = turn_between(yaw, lattice_yaw(to.heading))};
+    if (!is_curve(way)) return out;
+    const LatticeMove corner = lattice_.corner(way, from.heading);
+    out.corner = from.at + step_ * Vec2(corner.cols, corner.rows);
+    return out;
 }
 
 void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out)
@@ -110,10 +136,18 @@ std::optional<std::size_t> WayJudge::place_ahead(const Vec2& from, const PlaceSt
                        [&](const PlaceStates& other) { return slope_at(to, other, opposite(direction)); });
 }
 
-double WayJudge::largest_rise(double length) const
+double WayJudge::largest_rise(Way way, int heading) const
 {
-    // The two straight ways of a curve are longer than the straight line between its ends.
-    return std::numbers::sqrt2 * length * steepest_ + 2 * (max_step_ + limit_slack);
+    // The two straight ways of a curve are longer than the straight line between its ends. A curve of a car has more
+    // pieces than two only if it is longer than two steps.
+    const double length = step_ * lattice_.length(way, heading);
+    return std::numbers::sqrt2 * length * steepest_ +
+           std::max(2, pieces_of_curve(way, heading)) * (max_step_ + limit_slack);
+}
+
+int WayJudge::pieces_of_curve(Way way, int heading) const
+{
+    return int(std::ceil(lattice_.length(way, heading) - limit_slack));
 }
 
 /// Returns the index of the place with the smallest step that has a state at a heading, if the step is at most
@@ -175,22 +209,58 @@ bool WayJudge::can_go(const StateAt& from, const StateAt& to, Way way)
     const StatePose &pose = from.place.poses[std::size_t(from.heading)],
                     &other = to.place.poses[std::size_t(to.heading)];
     const Course course = course_of(from, to, way);
-    if (pose.is_exact && other.is_exact) return can_follow(course, pose, other);
-    return is_free(course, pose, other, shared_.options.stand.lift) ||
-           can_follow(course, exact_pose(from), exact_pose(to));
+    if (pose.is_exact && other.is_exact)
+        return can_follow(course, pose, other) || passes_kink(from, to, pose, other, way);
+    const int few = pieces_between(course, pose, other, radius_).front();
+    if (is_free(course, pose, other, few, shared_.options.stand.lift)) return true;
+    const StatePose exact = exact_pose(from), exact_other = exact_pose(to);
+    return can_follow(course, exact, exact_other) || passes_kink(from, to, exact, exact_other, way);
+}
+
+/// Returns whether the robot can go straight over a kink of the ground, on which it tilts, if it is also let down
+/// between the two states.
+bool WayJudge::passes_kink(const StateAt& from, const StateAt& to, const StatePose& pose, const StatePose& other,
+                           Way way)
+{
+    if (way != Way::Ahead && way != Way::Aside) return false;
+    const auto [few, many] = pieces_between(course_of(from, to, way), pose, other, radius_);
+    if (many == few) return false;
+    const std::vector<SettledPose> stops = follow(from, to, way, kink_pieces);
+    return !stops.empty() && stops.back().ground->height == to.place.ground;
+}
+
+std::vector<SettledPose> WayJudge::follow(const StateAt& from, const StateAt& to, Way way, int pieces)
+{
+    const Course course = course_of(from, to, way);
+    set_start(from.at);
+    std::vector<SettledPose> out;
+    SettledPose pose = stand_.judge({from.at.x(), from.at.y(), from.place.ground}, course.yaw);
+    for (int k = 1; k <= pieces; ++k) {
+        const auto [at, yaw] = k < pieces ? course.at(double(k) / pieces) : std::pair(to.at, lattice_yaw(to.heading));
+        auto next = go_prepared(pose, at, yaw);
+        if (!next) return {};
+        pose = *std::move(next);
+        out.push_back(pose);
+    }
+    return out;
 }
 
 /// Returns whether the robot meets nothing on a way between two poses, both of which are exact.
 bool WayJudge::can_follow(const Course& course, const StatePose& pose, const StatePose& other)
 {
-    return is_free(course, pose, other, shared_.options.stand.lift) || can_climb(course, pose, other);
+    const auto [few, many] = pieces_between(course, pose, other, radius_);
+    const auto is_possible = [&](int pieces) {
+        return is_free(course, pose, other, pieces, shared_.options.stand.lift) ||
+               can_climb(course, pose, other, pieces);
+    };
+    return is_possible(few) || (many > few && is_possible(many));
 }
 
 /// Returns whether the robot can be raised by max_step at both ends of a way, and then meets nothing.
-bool WayJudge::can_climb(const Course& course, const StatePose& pose, const StatePose& other)
+bool WayJudge::can_climb(const Course& course, const StatePose& pose, const StatePose& other, int pieces)
 {
     const double lift = shared_.options.stand.lift;
-    if (!(max_step_ > lift) || !is_free(course, pose, other, max_step_)) return false;
+    if (!(max_step_ > lift) || !is_free(course, pose, other, pieces, max_step_)) return false;
     const auto can_rise = [&](const Pose& settled) {
         const Pose low{settled.position + lift * Vec3::UnitZ(), settled.rotation},
             high{settled.position + max_step_ * Vec3::UnitZ(), settled.rotation};
@@ -236,6 +306,13 @@ std::optional<double> WayJudge::ground_near(const Vec3& place, double most)
 
 std::optional<SettledPose> WayJudge::go(const SettledPose& pose, const Vec2& to, double yaw)
 {
+    set_start(pose.position.head<2>());
+    return go_prepared(pose, to, yaw);
+}
+
+/// The same if set_start() was called for a place near both ends.
+std::optional<SettledPose> WayJudge::go_prepared(const SettledPose& pose, const Vec2& to, double yaw)
+{
     const Vec2 from = pose.position.head<2>();
     const double ground = pose.ground->height, length = (to - from).norm();
     std::vector<PlaceStates> places;
@@ -250,7 +327,6 @@ std::optional<SettledPose> WayJudge::go(const SettledPose& pose, const Vec2& to,
     }
     const auto k = lowest_step(pose, to, places, 0);
     if (!k) return std::nullopt;
-    set_start(from);
     const Course course{.begin = from, .end = to, .yaw = pose.yaw, .turn = turn_between(pose.yaw, yaw)};
     if (!can_follow(course, state_of(pose), state_of(poses[*k]))) return std::nullopt;
     return std::move(poses[*k]);
@@ -268,11 +344,8 @@ StatePose WayJudge::settled(const Vec2& at, double ground, int heading)
     return state_of(stand_.judge({at.x(), at.y(), ground}, lattice_yaw(heading)));
 }
 
-bool WayJudge::is_free(const Course& course, const StatePose& pose, const StatePose& other, double lift)
+bool WayJudge::is_free(const Course& course, const StatePose& pose, const StatePose& other, int pieces, double lift)
 {
-    const bool is_turning = course.turn != 0 || std::abs(pose.roll - other.roll) > large_tilt ||
-                            std::abs(pose.pitch - other.pitch) > large_tilt;
-    const int pieces = is_turning ? turn_pieces : 1;
     const double growth = pose.is_exact && other.is_exact ? 0 : LevelGround::tolerance;
     poses_.clear();
     for (int k = 0; k <= pieces; ++k) {

@@ -50,22 +50,26 @@ struct Course {
     double yaw = 0, turn = 0;         ///< rad; at the beginning, and until the end
     std::optional<Vec2> corner = {};  ///< of a curve: where the straight lines ahead and back from its ends meet
 
-    /// Returns the position and the yaw after a part t of the way. In a curve, the robot follows the quadratic Bezier
-    /// curve and looks along it.
+    double length() const;  ///< m
+    /// Returns the position and the yaw after a part t of the way. In a curve, the robot follows curve_in_corner() and
+    /// looks along it.
     std::pair<Vec2, double> at(double t) const;
+
+private:
+    Curve curve() const;  ///< if there is a corner
 };
 
 /// Finds states, and examines the ways between them, for one thread. ReachGraph says which ways there are.
 class WayJudge {
 public:
-    /// `longest_way`: m.
-    WayJudge(const Judge::Impl& shared, double max_step, double longest_way);
+    /// `step`: of the grid, m.
+    WayJudge(const Judge::Impl& shared, double max_step, const Lattice& lattice, double step);
 
     /// Appends the places of a column.
     void find_places(const Vec2& at, std::vector<PlaceStates>& out);
 
-    /// Returns how much the ground may rise on a way of two steps or fewer with this length, m.
-    double largest_rise(double length) const;
+    /// Returns how much the ground may rise on a way, m.
+    double largest_rise(Way way, int heading) const;
 
     /// Returns the index, in the next column `to` in the direction of a heading, of the place with the smallest step
     /// from this one; it has a state at `at_heading`. Returns nothing if all steps are larger than max_step.
@@ -80,6 +84,13 @@ public:
     }
     /// Returns whether the robot meets nothing on a way from one state to another one.
     bool can_go(const StateAt& from, const StateAt& to, Way way);
+
+    /// Drives along a way, in pieces of the same length, each of which complies with the rules for straight ways, with
+    /// settled poses at both ends. Returns these poses, except the first one; nothing if the robot cannot go. It may
+    /// end on another layer than that of `to`.
+    std::vector<SettledPose> follow(const StateAt& from, const StateAt& to, Way way, int pieces);
+    /// Returns into how many pieces a curve of a car is cut: of at most a step of the grid.
+    int pieces_of_curve(Way way, int heading) const;
 
     /// Returns the index, in a column at most longest_way away, of the place to which the robot can go from a valid
     /// settled pose, where it then stands at a heading. The poses of the places are not used.
@@ -109,12 +120,16 @@ private:
     void set_start(const Vec2& at);
     StatePose exact_pose(const StateAt& state);
     StatePose settled(const Vec2& at, double ground, int heading);
+    Course course_of(const StateAt& from, const StateAt& to, Way way) const;
+    bool passes_kink(const StateAt& from, const StateAt& to, const StatePose& pose, const StatePose& other, Way way);
+    std::optional<SettledPose> go_prepared(const SettledPose& pose, const Vec2& to, double yaw);
     bool can_follow(const Course& course, const StatePose& pose, const StatePose& other);
-    bool can_climb(const Course& course, const StatePose& pose, const StatePose& other);
-    bool is_free(const Course& course, const StatePose& pose, const StatePose& other, double lift);
+    bool can_climb(const Course& course, const StatePose& pose, const StatePose& other, int pieces);
+    bool is_free(const Course& course, const StatePose& pose, const StatePose& other, int pieces, double lift);
 
     const Judge::Impl& shared_;
-    const double max_step_, longest_way_;
+    const Lattice& lattice_;
+    const double max_step_, step_, longest_way_;
     const double radius_;    ///< distance of the robot's farthest point from its origin, m
     const double steepest_;  ///< slope on which it may stand
     StandJudge stand_;

@@ -6,16 +6,28 @@
 #include "robot/body_parts.h"
 #include "robot/hull.h"
 #include "robot/mesh_parts.h"
+#include "robot/wheels.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/input_file.h>
 #include <spawnfield/robot.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
 
 namespace spawnfield {
+
+const char* name_of(Drive drive) { return drive_names.begin()[std::size_t(drive)]; }
+
+Drive drive_called(const std::string& name)
+{
+    const auto found = std::find(drive_names.begin(), drive_names.end(), name);
+    if (found == drive_names.end())
+        throw ArgumentError("drive_called", "\"" + name + "\" is no drive; needs differential, omni, legged or car");
+    return Drive(found - drive_names.begin());
+}
 
 Vec3 RobotPart::centre() const
 {
@@ -121,10 +133,27 @@ void append_part(Robot& robot, const YamlMap& map, const std::filesystem::path& 
     robot.parts.push_back(std::move(part));
 }
 
+RobotDrive read_drive(const YamlMap& map)
+{
+    RobotDrive out;
+    if (map.has("drive")) out.kind = drive_called(map.one_of("drive", drive_names, ""));
+    if (map.has("max_step")) out.max_step = map.finite("max_step");
+    if (map.has("turning_radius")) out.turning_radius = map.positive("turning_radius");
+    if (map.has("wheel_radius")) out.wheel_radius = map.positive("wheel_radius");
+    if (out.max_step && *out.max_step < 0) map.fail("max_step", "is " + number(*out.max_step) + ", needs >= 0 m");
+    if (out.kind == Drive::Car && !out.turning_radius)
+        map.fail("drive", "is car, which needs turning_radius: the smallest radius of its curves, m");
+    if (out.kind == Drive::Legged && !out.max_step)
+        map.fail("drive", "is legged, which needs max_step: the largest step that it climbs, m");
+    if (out.turning_radius && out.kind != Drive::Car) map.fail("turning_radius", "is only for drive: car");
+    return out;
+}
+
 Robot read_robot_yaml(const std::filesystem::path& file, int mesh_parts)
 {
     const YamlMap root = read_yaml(file, "spawnfield-robot/1");
-    root.only({"format", "name", "parts", "contacts", "mass_center"});
+    root.only(
+        {"format", "name", "parts", "contacts", "mass_center", "drive", "max_step", "turning_radius", "wheel_radius"});
     Robot robot;
     robot.name = root.text("name", file.stem().string());
     std::size_t count = 0;
@@ -133,6 +162,7 @@ Robot read_robot_yaml(const std::filesystem::path& file, int mesh_parts)
     if (robot.parts.empty()) root.fail("parts", "is empty, needs at least one part");
     if (root.has("contacts")) robot.contacts = root.vectors("contacts");
     if (root.has("mass_center")) robot.mass_center = root.vector("mass_center");
+    robot.drive = read_drive(root);
     return robot;
 }
 
@@ -147,6 +177,7 @@ Robot read_model_robot(const std::filesystem::path& file_or_folder, const RobotO
     robot.name = model.name;
     robot.notices = std::move(model.notices);
     if (model.mass > 0) robot.mass_center = model.mass_moment / model.mass;
+    robot.drive.wheel_radius = wheel_radius_of(model);
     for (const CollisionBody& body : model.bodies) append_body(robot, body, paths, file.string(), options.mesh_parts);
     if (robot.parts.empty())
         throw FileError(file.string(), "has no <collision>, needs at least one (<visual> elements are not used)");

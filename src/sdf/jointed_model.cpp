@@ -47,6 +47,10 @@ public:
             out_.notices.push_back(file_.string() + ": the <pose> of model \"" + model.Name() +
                                    "\" is ignored: poses are in its own frame");
         collect(model, {}, "");
+        for (const Hinge& hinge : hinges_)
+            if (hinge.joint.motion == Joint::Motion::Turning && std::isinf(hinge.joint.lower) &&
+                std::isinf(hinge.joint.upper))
+                out_.axles[hinge.child] = hinge.axis;
         move_links(model);
         for (const Link& link : links_) add_link(link);
         return std::move(out_);

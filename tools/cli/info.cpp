@@ -157,9 +157,10 @@ Json islands_json(const InfoArgs& args, const Session& session, Summary& summary
     const ReachGraph graph = find_islands(args, args.reach, session, summary, "info");
     const std::vector<Floor> floors = floors_of(session.map);
     Json out = {{"robot", session.robot.name},
-                {"drive", args.reach.drive},
-                {"max_step", graph.options().max_step},
+                {"drive", name_of(*graph.options().drive)},
+                {"max_step", *graph.options().max_step},
                 {"reach_step", *graph.options().step}};
+    if (graph.options().turning_radius) out["turning_radius"] = *graph.options().turning_radius;
     out["islands"] = Json::array();
     for (const Island& island : graph.islands())
         out["islands"].push_back({{"island", out["islands"].size()},

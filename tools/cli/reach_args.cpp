@@ -76,11 +76,15 @@ void add_reach(CLI::App& command, ReachArgs& args)
     start_group(command, help_group::reach);
     command
         .add_option("--drive", args.drive,
-                    "How the robot moves: differential (ahead, back, and turns on the spot), or omni (also to the "
-                    "sides) (default differential)")
-        ->check(one_of({"differential", "omni"}).description(""));
+                    "How the robot moves: differential (ahead, back, and turns on the spot), omni (also to the sides), "
+                    "legged (as omni) or car (ahead and back, in curves) (default: that of robot.yaml, or "
+                    "differential)")
+        ->check(one_of({drive_names.begin(), drive_names.end()}).description(""));
+    command.add_option("--turning-radius", args.turning_radius,
+                       "m: smallest radius of the curves of a car (default: that of robot.yaml)");
     command.add_option("--max-step", args.max_step,
-                       "m: largest step up or down in the ground that the robot overcomes (default 0.03)");
+                       "m: largest step up or down in the ground that the robot overcomes (default: that of "
+                       "robot.yaml, or a quarter of the wheel radius, or 0.03)");
     command.add_option("--reach-step", args.reach_step,
                        "m between the places whose ways are examined (default: a quarter of the robot's smallest "
                        "width)");
@@ -106,10 +110,28 @@ namespace {
 
 ReachOptions reach_options(const QueryArgs& query, const ReachArgs& args)
 {
-    return {.drive = args.drive == "omni" ? Drive::Omni : Drive::Differential,
+    return {.drive = args.drive.empty() ? std::nullopt : std::optional(drive_called(args.drive)),
             .max_step = args.max_step,
+            .turning_radius = args.turning_radius,
             .step = args.reach_step,
             .threads = query.threads};
+}
+
+}  // namespace
+
+namespace {
+
+/// Prints a notice if a graph that is not kept has very many columns.
+void notice_if_long(const QueryArgs& query, const ReachOptions& options, const Session& session)
+{
+    constexpr double many = 100000;
+    const Vec3 size = session.map.bounds.max - session.map.bounds.min;
+    const double columns = size.x() * size.y() / (*options.step * *options.step);
+    std::error_code unreadable;
+    if (columns < many || std::filesystem::exists(kept_graph_file(*session.judge, options), unreadable)) return;
+    notice(query, "islands: about " + rounded(columns) + " places are examined, " + rounded(*options.step) +
+                      " m apart, which may take long; a larger --reach-step takes less time, but misses narrow "
+                      "passages");
 }
 
 }  // namespace
@@ -117,8 +139,9 @@ ReachOptions reach_options(const QueryArgs& query, const ReachArgs& args)
 ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Session& session, Summary& summary,
                         const std::string& command, bool keep_ways)
 {
-    ReachOptions options = reach_options(query, args);
+    ReachOptions options = with_defaults(reach_options(query, args), session.robot);
     options.keep_ways = keep_ways;
+    notice_if_long(query, options, session);
     options.progress = progress_bar(query, command + ", islands");
     const KeptGraph kept = kept_graph(*session.judge, options);
     if (!kept.notice.empty()) notice(query, kept.notice);
@@ -126,7 +149,8 @@ ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Ses
     char seconds[40];
     std::snprintf(seconds, sizeof seconds, kept.is_read ? " read in %.3f s" : " found in %.2f s",
                   summary.seconds_of("islands"));
-    summary.extra.push_back(counted(kept.graph.islands().size(), "island") + seconds);
+    summary.extra.push_back(counted(kept.graph.islands().size(), "island") + seconds + ", reach step " +
+                            rounded(*options.step) + " m");
     return kept.graph;
 }
 
@@ -182,7 +206,7 @@ void notice_about_islands(const QueryArgs& query, const IslandArgs& args, const 
     constexpr std::size_t examined = 1000;  // spawns
     constexpr double small_island = 5;      // m2
     const ReachOptions options = reach_options(query, args);
-    const double step = options.step.value_or(auto_reach_step(session.robot));
+    const double step = *with_defaults(options, session.robot).step;
     const Vec3 size = session.map.bounds.max - session.map.bounds.min;
     const bool is_kept = std::filesystem::exists(kept_graph_file(*session.judge, options));
     std::uint64_t elements = 0;

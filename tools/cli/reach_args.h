@@ -9,9 +9,8 @@ namespace spawnfield::cli {
 
 /// Options on how the robot drives.
 struct ReachArgs {
-    std::string drive = "differential";
-    double max_step = 0.03;            ///< m
-    std::optional<double> reach_step;  ///< m
+    std::string drive;                                             ///< empty: that of the robot
+    std::optional<double> max_step, turning_radius, reach_step{};  ///< m
 };
 
 /// Options on the islands on which poses must be.
@@ -21,9 +20,9 @@ struct IslandArgs : ReachArgs {
     std::vector<std::string> reachable_from;
 };
 
-/// Adds, below the heading "Reach", --drive, --max-step and --reach-step.
+/// Adds, below the heading "Reach", --drive, --turning-radius, --max-step and --reach-step.
 void add_reach(CLI::App& command, ReachArgs& args);
-inline const std::vector<std::string> reach_option_names{"--drive", "--max-step", "--reach-step"};
+inline const std::vector<std::string> reach_option_names{"--drive", "--turning-radius", "--max-step", "--reach-step"};
 
 /// Adds, below the heading "Reach", --island, --min-island and --reachable-from, and the options of add_reach().
 void add_islands(CLI::App& command, IslandArgs& args);
