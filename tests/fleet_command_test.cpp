@@ -205,13 +205,27 @@ TEST_CASE("sample --fill places robots until none has room")
     refuses("--fill --format thesis -o t", "--format thesis has no fleets");
 }
 
-TEST_CASE("Ctrl-C ends a fill, and nothing is written")
+TEST_CASE("Ctrl-C ends a fill or a fleet with status 130, and the robots that were placed are written")
 {
-    const Arena arena;
+    const FleetArena arena;
     const ProgramRun run = interrupt_program(
-        arena, "sample map --robot box:0.3,0.3,0.2 --yaw random --fill --fill-step 0.05 -o filled.csv");
+        arena,
+        "sample map --robot box:0.3,0.3,0.2 --yaw random --fill --fill-step 0.05 -o filled.csv --summary s.json");
     CHECK(run.status == 130);
-    CHECK_FALSE(std::filesystem::exists(arena / "filled.csv"));
+    const std::size_t filled = read_poses(arena / "filled.csv").poses.size();
+    CHECK_THAT(run.err, Contains("spawnfield sample: interrupted; " + std::to_string(filled) + " robots; ") &&
+                            Catch::Matchers::EndsWith("spawnfield: interrupted: " + std::to_string(filled) +
+                                                      " robots were found and written\n"));
+    CHECK(Json::parse(bytes_of(arena / "s.json"))["interrupted"] == true);
+    arena.write("fleet.yaml", head + "robots:\n- {name: a, robot: 'box:0.3,0.3,0.2', count: 1000000, yaw: random}\n");
+    const ProgramRun fleet = interrupt_program(arena, "sample map --fleet fleet.yaml --format json -o fleet.json");
+    CHECK(fleet.status == 130);
+    const Json json = Json::parse(bytes_of(arena / "fleet.json"));
+    CHECK(json["interrupted"] == true);
+    const std::size_t found = json["robots"].size();
+    CHECK((found > 0 && json["kinds"][0]["found"] == found));
+    CHECK_THAT(fleet.err, Catch::Matchers::EndsWith("spawnfield: interrupted: " + std::to_string(found) +
+                                                    " robots of 1000000 were found and written\n"));
 }
 
 TEST_CASE("all robots of a fleet with one_island stand on one side of a wall")

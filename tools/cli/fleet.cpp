@@ -1,5 +1,6 @@
 #include "angle.h"
 #include "fleet_args.h"
+#include "interrupt.h"
 #include "messages.h"
 #include "numbers.h"
 #include "output.h"
@@ -271,23 +272,30 @@ private:
     std::vector<std::unique_ptr<SimulatorOutput>> outputs_;
 };
 
+/// Returns the number of robots that were asked for. No value: some as many as fit.
+std::optional<std::size_t> wanted_robots(std::span<const FleetKind> kinds)
+{
+    std::size_t out = 0;
+    for (const FleetKind& kind : kinds) {
+        if (!kind.count) return std::nullopt;
+        out += *kind.count;
+    }
+    return out;
+}
+
 void fill(Summary& summary, const Fleet& fleet, std::span<const FleetKind> kinds, const FleetOptions& options)
 {
     summary.seed = options.seed;
-    std::size_t wanted = 0;
+    const std::optional<std::size_t> wanted = wanted_robots(kinds);
     std::uint64_t draws = 0, close = 0, overlapping = 0;
-    bool is_fill = false;
-    for (std::size_t k = 0; k < kinds.size(); ++k) {
-        const FleetKindResult& result = fleet.kinds[k];
-        wanted += kinds[k].count.value_or(0);
-        is_fill = is_fill || !kinds[k].count;
+    for (const FleetKindResult& result : fleet.kinds) {
         draws += result.draws;
         close += result.too_close;
         overlapping += result.overlapping;
     }
     summary.extra.insert(summary.extra.begin(),
-                         is_fill ? counted(fleet.robots.size(), "robot")
-                                 : std::to_string(fleet.robots.size()) + " of " + counted(wanted, "robot"));
+                         wanted ? std::to_string(fleet.robots.size()) + " of " + counted(*wanted, "robot")
+                                : counted(fleet.robots.size(), "robot"));
     summary.extra.push_back(counted(draws, "drawn pose") + ", " + std::to_string(close) + " too close, " +
                             std::to_string(overlapping) + " overlapping");
     summary.draws = {{"all", draws}, {"too_close", close}, {"overlapping", overlapping}};
@@ -352,13 +360,16 @@ Ending run_fleet(const FleetInputs& inputs, const CLI::App& command, Summary& su
                          .between = file.between,
                          .seed = inputs.draws.seed,
                          .threads = inputs.query.threads,
-                         .progress = progress_bar(inputs.query, "sample")};
+                         .progress = progress_bar(inputs.query, "sample", false),
+                         .stop = is_interrupted};
     if (file.formation) options.formation = formation_of(inputs, *file.formation, members[0], sessions[0], summary);
     const Fleet fleet = place_fleet(kinds, options);
+    summary.is_interrupted = end_interruptible_work(!fleet.robots.empty());
     summary.lap("query");
     output.write(fleet, kinds, options);
     fill(summary, fleet, kinds, options);
-    return ending_of(fleet, kinds);
+    return summary.is_interrupted ? interrupted_ending(fleet.robots.size(), "robot", wanted_robots(kinds))
+                                  : ending_of(fleet, kinds);
 }
 
 }  // namespace spawnfield::cli

@@ -67,7 +67,7 @@ double Summary::seconds_of(const std::string& stage) const
 
 std::string Summary::line(double total) const
 {
-    std::string text = "spawnfield " + command_ + ": ";
+    std::string text = "spawnfield " + command_ + ": " + (is_interrupted ? "interrupted; " : "");
     for (const std::string& words : extra) text += words + "; ";
     if (counts_) {
         text += counted(counts_->total(), "pose");
@@ -86,6 +86,7 @@ std::string Summary::json(double total) const
 {
     nlohmann::ordered_json out;
     out["command"] = command_;
+    if (is_interrupted) out["interrupted"] = true;
     out["poses"] = counts_ ? counts_->total() : 0;
     out["counts"] = nlohmann::ordered_json::object();
     if (counts_)

@@ -27,13 +27,14 @@ public:
     std::uint64_t seed = 0;
     std::string map_hash;
     std::vector<std::string> changes;                         ///< of the map
+    bool is_interrupted = false;                              ///< the result is a part of what was asked for
     ExactTime exact_time;                                     ///< for a query's options
     std::vector<std::string> extra;                           ///< further words, at the beginning of the line
     std::optional<double> offset;                             ///< m, of poses on layers
     std::vector<std::pair<std::string, double>> more_stages;  ///< of a bake: name and seconds
     struct Fullness {
         bool is_full;
-        double undecided_area;  // m2
+        double undecided_area;  // m2; NaN: nothing is proven
     };
     std::optional<Fullness> fullness;  ///< of a sample
     /// For a sample or search: the number of draws, and how many were dropped for each reason.
