@@ -16,15 +16,6 @@
 namespace spawnfield::cli {
 namespace {
 
-PairTable open_pairs(const CommonArgs& common, const std::string& file)
-{
-    const std::string text = is_standard(file) ? read_standard_input() : read_file(file);
-    PairTable out = parse_pairs(text, input_name(file), common.allow_empty);
-    for (const PoseTable* table : {&out.starts, &out.goals})
-        for (const std::string& what : table->notices) notice(common, what);
-    return out;
-}
-
 /// Returns "5 valid, 2 unreachable".
 std::string pair_count_words(const std::vector<JudgedPair>& pairs)
 {
@@ -67,6 +58,15 @@ void write_report(const std::string& out, const std::string& format, const PairR
 }
 
 }  // namespace
+
+PairTable open_pairs(const CommonArgs& common, const std::string& file)
+{
+    const std::string text = is_standard(file) ? read_standard_input() : read_file(file);
+    PairTable out = parse_pairs(text, input_name(file), common.allow_empty);
+    for (const PoseTable* table : {&out.starts, &out.goals})
+        for (const std::string& what : table->notices) notice(common, what);
+    return out;
+}
 
 void add_check_pairs(CLI::App& command, CheckPairsArgs& args)
 {

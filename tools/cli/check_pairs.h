@@ -4,6 +4,8 @@
 #include "pair_args.h"
 #include "reach_args.h"
 
+#include <spawnfield/pair_files.h>
+
 namespace spawnfield::cli {
 
 /// Options of `check --pairs`.
@@ -12,6 +14,9 @@ struct CheckPairsArgs {
     PairArgs limits;
     ReachArgs reach;
 };
+
+/// Reads a file of pairs, and prints notices about it.
+PairTable open_pairs(const CommonArgs& common, const std::string& file);
 
 /// Adds --pairs and the options that belong to it.
 void add_check_pairs(CLI::App& command, CheckPairsArgs& args);
