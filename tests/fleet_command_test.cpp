@@ -288,6 +288,28 @@ TEST_CASE("the example fleet of the training arena is complete")
                                  "/maps/training/fleet.yaml'");
     REQUIRE(run.status == 0);
     CHECK_THAT(run.err, Contains("18 of 18 robots"));
+TEST_CASE("the ends of a convoy are checked before islands, whose words in the summary name their kind")
+{
+    const FleetArena arena(
+        head + "one_island: true\nrobots:\n- {name: a, robot: 'box:0.5,0.5,0.3', count: 3}\n" +
+        "- {name: b, robot: 'box:0.4,0.4,0.3', count: 2, formation: {shape: convoy, spacing: 1, from: [-7.2, 1.7], "
+        "to: [7, -7]}}\n");
+    const ProgramRun run = arena.fleet("--reach-step 0.4");
+    CHECK(run.status == 4);
+    CHECK_THAT(run.err,
+               Contains("fleet.yaml: robots \"b\" (line 5): to is 7,-7, where the robot can stand at none of 16 "
+                        "headings (at the first one: submerged); choose another place"));
+    const auto is_graph = [](const std::string& name) { return name.starts_with("reach-"); };
+    CHECK(std::ranges::none_of(names_in(arena / "map"), is_graph));  // no island was searched
+    std::string text = bytes_of(arena / "fleet.yaml");
+    text.replace(text.find("[7, -7]"), 7, "[2.9, 3.7]");
+    arena.write("fleet.yaml", text);
+    const ProgramRun complete = arena.fleet("--reach-step 0.4");
+    CHECK(complete.status == 0);
+    CHECK_THAT(complete.err, Contains("; a: ") && Contains("; b: ") && !Contains("a: b:"));
+    CHECK(std::ranges::any_of(names_in(arena / "map"), is_graph));
+}
+
     const PoseTable table = parse_poses(run.out, "fleet");
     const std::vector<std::string> kinds = column_of(table, "kind");
     CHECK(

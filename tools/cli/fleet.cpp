@@ -140,6 +140,25 @@ std::vector<Session> open_sessions(const FleetInputs& inputs, const std::vector<
     return out;
 }
 
+/// Finds where a kind of the fleet can drive. The words about it in the summary have the name of the kind.
+ReachGraph islands_of_kind(const Member& member, const Session& session, Summary& summary, bool keep_ways = false)
+{
+    const ReachGraph out = find_islands(member.args.query, member.args.islands, session, summary, "sample", keep_ways);
+    if (!member.plan.place.empty()) summary.extra.back().insert(0, member.plan.name + ": ");
+    return out;
+}
+
+/// Throws FileError if a robot cannot stand at the ends of a convoy's path, before all work on islands.
+void check_ends(const FleetInputs& inputs, const std::optional<FormationPlan>& plan, const Member& member,
+                const Session& session)
+{
+    if (!plan || !plan->from_to) return;
+    for_kind(inputs, member.plan, [&] {
+        check_standing(*session.judge, "from", plan->from_to->first);
+        check_standing(*session.judge, "to", plan->from_to->second);
+    });
+}
+
 /// Lets all kinds stand only on islands: those that they chose, or the linked ones of `one_island`.
 void choose_fleet_islands(const FleetFile& file, std::vector<Member>& members, const std::vector<Session>& sessions,
                           Summary& summary)
@@ -151,7 +170,7 @@ void choose_fleet_islands(const FleetFile& file, std::vector<Member>& members, c
         if (file.one_island && k == 0 && member.islands.selects_all()) member.islands.largest = true;
         const bool is_linked = file.one_island && k > 0;
         if (!is_linked && member.islands.selects_all()) continue;
-        const ReachGraph graph = find_islands(member.args.query, member.args.islands, sessions[k], summary, "sample");
+        const ReachGraph graph = islands_of_kind(member, sessions[k], summary);
         std::vector<std::size_t> chosen;
         if (!is_linked) {
             chosen = chosen_islands(graph, *sessions[k].judge, member.islands);
@@ -180,7 +199,7 @@ Formation formation_of(const FleetInputs& inputs, const FormationPlan& plan, con
     Formation out = plan.formation;
     if (!plan.from_to) return out;
     return for_kind(inputs, member.plan, [&] {
-        const ReachGraph graph = find_islands(member.args.query, member.args.islands, session, summary, "sample", true);
+        const ReachGraph graph = islands_of_kind(member, session, summary, true);
         out.path = drivable_path(*session.judge, graph, plan.from_to->first, plan.from_to->second);
         return out;
     });
@@ -354,6 +373,9 @@ Ending run_fleet(const FleetInputs& inputs, const CLI::App& command, Summary& su
     notice_about_avoided(inputs.query, sessions[0].map, avoid);
     output.notices(sessions);
     summary.lap("load");
+    check_ends(inputs, file.formation, members[0], sessions[0]);
+    for (std::size_t k = 0; k < members.size(); ++k)
+        check_ends(inputs, members[k].plan.formation, members[k], sessions[k]);
     choose_fleet_islands(file, members, sessions, summary);
     const std::vector<FleetKind> kinds = fleet_kinds(inputs, members, sessions, summary);
     FleetOptions options{.min_distance = file.min_distance,

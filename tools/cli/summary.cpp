@@ -38,11 +38,12 @@ Summary::Summary(std::string command, const CommonArgs& args)
     if (!args.summary.empty() && !is_standard(args.summary) && !is_pipe) file_.emplace(args.summary);
 }
 
-void Summary::lap(const std::string& stage)
+double Summary::lap(const std::string& stage)
 {
-    const double time = now();
-    seconds_.emplace_back(stage, time - last_);
+    const double time = now(), out = time - last_;
+    seconds_.emplace_back(stage, out);
     last_ = time;
+    return out;
 }
 
 void Summary::set_verdicts(const VerdictCounts& counts, std::uint64_t exact_checks)

@@ -18,7 +18,8 @@ public:
     /// Opens the JSON file before all work, so that a wrong name leaves nothing half done. Throws OutputError.
     Summary(std::string command, const CommonArgs& args);
 
-    void lap(const std::string& stage);  ///< the seconds since the last lap belong to this stage
+    /// The seconds since the last lap, which are returned, belong to this stage.
+    double lap(const std::string& stage);
     void set_verdicts(const VerdictCounts& counts, std::uint64_t exact_checks);
     double seconds_of(const std::string& stage) const;
     double elapsed() const;  ///< seconds since the start
