@@ -137,6 +137,13 @@ TEST_CASE("files of a fleet for simulators have each robot with its own name and
     tinyxml2::XMLDocument mujoco;
     REQUIRE(mujoco.Parse(bodies.c_str()) == tinyxml2::XML_SUCCESS);
     CHECK_THAT(bodies, Contains("<body name=\"husky_3\"") && Contains("<key name=\"spawns\""));
+    // Only the carts have a mass in their file.
+    std::size_t with_mass = 0;
+    for (std::size_t at = 0; (at = bodies.find("<inertial pos", at)) != std::string::npos; ++at) ++with_mass;
+    CHECK(with_mass == 4);
+    CHECK_THAT(bodies, Contains("<inertial pos=\"0 0 0.2\" mass=\"20\" fullinertia=\"0.6 1 1.4 0 0 0\"/>"));
+    CHECK_THAT(arena.fleet("--format mujoco").err,
+               Contains("notice: husky has no mass and inertia of a rigid body in its file"));
     CHECK_THAT(arena.fleet("--format mujoco --keys together").out,
                !Contains("<body") && Contains("<key name=\"spawns\""));
     CHECK_THAT(arena.fleet("--format mujoco --keys each").err, Contains("--keys is each"));
@@ -281,13 +288,6 @@ TEST_CASE("formations of a file stand in their shape, and a convoy drives from o
     CHECK(cars[0].position.x() > -6);
 }
 
-TEST_CASE("the example fleet of the training arena is complete")
-{
-    const Arena arena;
-    const ProgramRun run = arena("sample map --seed 2 --reach-step 0.4 --fleet '" + source_folder() +
-                                 "/maps/training/fleet.yaml'");
-    REQUIRE(run.status == 0);
-    CHECK_THAT(run.err, Contains("18 of 18 robots"));
 TEST_CASE("the ends of a convoy are checked before islands, whose words in the summary name their kind")
 {
     const FleetArena arena(
@@ -310,6 +310,13 @@ TEST_CASE("the ends of a convoy are checked before islands, whose words in the s
     CHECK(std::ranges::any_of(names_in(arena / "map"), is_graph));
 }
 
+TEST_CASE("the example fleet of the training arena is complete")
+{
+    const Arena arena;
+    const ProgramRun run = arena("sample map --seed 2 --reach-step 0.4 --fleet '" + source_folder() +
+                                 "/maps/training/fleet.yaml'");
+    REQUIRE(run.status == 0);
+    CHECK_THAT(run.err, Contains("18 of 18 robots"));
     const PoseTable table = parse_poses(run.out, "fleet");
     const std::vector<std::string> kinds = column_of(table, "kind");
     CHECK(

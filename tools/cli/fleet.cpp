@@ -7,6 +7,7 @@
 
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>
+#include <spawnfield/robot_inertia.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -242,8 +243,19 @@ public:
         }
     }
 
-    void notices(const std::vector<Session>& sessions) const
+    /// Reads what the files need of the robots, and prints notices about models and worlds.
+    void look_at(const std::vector<Member>& members, const std::vector<Session>& sessions)
     {
+        for (std::size_t k = 0; k < members.size() && inputs_.format == "mujoco" && writes_bodies_; ++k) {
+            const QueryArgs& query = members[k].args.query;
+            inertias_.push_back(robot_inertia(query.robot, robot_options(query)));
+            if (!inertias_.back())
+                notice(inputs_.query,
+                       sessions[k].robot.name +
+                           " has no mass and inertia of a rigid body in its file, so MuJoCo computes them "
+                           "from its shapes, with its default density; <inertial> in a URDF or SDF file "
+                           "gives them");
+        }
         for (std::size_t k = 0; k < outputs_.size(); ++k) outputs_[k]->notice_about_model(sessions[k].robot);
         outputs_[0]->notice_about_world(sessions[0].map);
     }
@@ -264,7 +276,8 @@ public:
             std::vector<std::size_t> kind_of;
             for (const FleetKind& kind : kinds) shapes.push_back(kind.judge.robot());
             for (const FleetRobot& robot : fleet.robots) kind_of.push_back(robot.kind);
-            return write_output(inputs_.out, [&](const auto& sink) { sink(mujoco_bodies(robots, shapes, kind_of)); });
+            return write_output(inputs_.out,
+                                [&](const auto& sink) { sink(mujoco_bodies(robots, shapes, kind_of, inertias_)); });
         }
         outputs_[0]->write(robots, kinds[0].judge.map(), [&] { return fleet_json(fleet, kinds, options, robots); });
     }
@@ -289,6 +302,7 @@ private:
     const FleetInputs& inputs_;
     const bool writes_bodies_;  ///< MuJoCo: of a fleet, unless --keys asks for keys alone
     std::vector<std::unique_ptr<SimulatorOutput>> outputs_;
+    std::vector<std::optional<RobotInertia>> inertias_;  ///< of each kind, for MuJoCo's bodies
 };
 
 /// Returns the number of robots that were asked for. No value: some as many as fit.
@@ -366,12 +380,12 @@ Ending run_fleet(const FleetInputs& inputs, const CLI::App& command, Summary& su
         needs_graph = needs_graph || !member.islands.selects_all() ||
                       (member.plan.formation && member.plan.formation->from_to);
     }
-    const FleetOutput output(inputs, command, members);
+    FleetOutput output(inputs, command, members);
     const std::vector<Session> sessions = open_sessions(inputs, members, summary);
     for (std::size_t k = 0; k < members.size(); ++k)
         for_kind(inputs, members[k].plan, [&] { members[k].complete(sessions[k], command, summary, needs_graph); });
     notice_about_avoided(inputs.query, sessions[0].map, avoid);
-    output.notices(sessions);
+    output.look_at(members, sessions);
     summary.lap("load");
     check_ends(inputs, file.formation, members[0], sessions[0]);
     for (std::size_t k = 0; k < members.size(); ++k)
