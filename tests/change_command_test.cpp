@@ -2,8 +2,11 @@
 #include "paths.h"
 #include "program.h"
 
+#include <spawnfield/poses.h>
+
 #include <nlohmann/json.hpp>
 
+using spawnfield::column_of, spawnfield::parse_poses, spawnfield::PoseTable;
 using Json = nlohmann::json;
 
 namespace {
@@ -106,6 +109,28 @@ TEST_CASE("a robot of --with stands at rest on the ground, or level at its z")
     CHECK(level.find("\n-4,3.05,0.29,collision,") != std::string::npos);
     const std::string two = check("box:0.4,0.4,0.3@-4,-3,0 --with box:0.4,0.4,0.3@-4,3,0");
     CHECK(two.find("\n-4,3.05,0.29,collision,0,0.29,box_2::0\n") != std::string::npos);
+}
+
+TEST_CASE("--without takes globs with commas between them, unless a name matches as a whole")
+{
+    const Yard yard;
+    const auto check = [&](const std::string& map, const std::string& options) {
+        return run_program(yard, "check " + map + " --poses poses.csv" + robot + options);
+    };
+    const std::string two = check("before", "--without crate-1 --without crate-2").out;
+    CHECK(two != check("before", "").out);
+    for (const char* const options : {"--without crate-1,crate-2", "--without crate-1,crate-2 --without crate-1"})
+        CHECK(check("before", options).out == two);
+    CHECK_THAT(check("before", "--without 'crate-1,pallet*'").err,
+               Contains("--without \"pallet*\" matches no part of the map"));
+    CHECK_THAT(check("before", "--without crate-1,").err, Contains("--without \"\" matches no part of the map"));
+    yard.write("comma.yaml", head + floor_and_wall +
+                                 "- {name: 'a,b', label: obstacle, box: [1, 1, 1], xyz: [-1, 1, 0.5]}\n"
+                                 "- {name: a, label: obstacle, box: [1, 1, 1], xyz: [-4, 3, 0.5]}\n");
+    REQUIRE(run_program(yard, "bake comma.yaml -o comma").status == 0);
+    const PoseTable table = parse_poses(check("comma", "--without 'a,b'").out, "verdicts");
+    CHECK(column_of(table, "hit")[4] == "a");  // only the part with the comma is gone
+    CHECK(column_of(table, "hit")[0].empty());
 }
 
 TEST_CASE("wrong changes are refused with a reason")

@@ -1,59 +1,16 @@
 #include "arena.h"
+#include "junit_cases.h"
 
 #include <spawnfield/map.h>
 #include <spawnfield/poses.h>
 
 #include <nlohmann/json.hpp>
-#include <tinyxml2.h>
 
 namespace {
-
-using tinyxml2::XMLElement;
 
 const std::string header = "name,x,y,z,yaw\n", start = "start,0,3,0.1,0\n", wall = "wall,-6.5,-5,0.1,0\n",
                   lake = "lake,7,-7,0.1,0\n", sky = "sky,0,3,2.5,0\n", cube = "cube,6.5,0,3,0\n",
                   away = "away,99,0,0,0\n";
-
-/// One test case of a JUnit file; `type` is empty if it passed.
-struct Case {
-    std::string class_name, name, type, message, text;
-};
-
-std::string attribute(const XMLElement& element, const char* name)
-{
-    const char* const value = element.Attribute(name);
-    REQUIRE(value != nullptr);
-    return value;
-}
-
-/// Returns the cases of a JUnit file. Checks that the counts in its two outer elements are right.
-std::vector<Case> cases_of(const std::string& junit)
-{
-    tinyxml2::XMLDocument document;
-    REQUIRE(document.Parse(junit.data(), junit.size()) == tinyxml2::XML_SUCCESS);
-    const XMLElement* const suites = document.FirstChildElement("testsuites");
-    REQUIRE(suites != nullptr);
-    const XMLElement* const suite = suites->FirstChildElement("testsuite");
-    REQUIRE((suite != nullptr && suite->NextSiblingElement() == nullptr));
-    std::vector<Case> out;
-    int failures = 0;
-    const XMLElement* next = suite->FirstChildElement("testcase");
-    for (; next != nullptr; next = next->NextSiblingElement()) {
-        Case& test = out.emplace_back(Case{attribute(*next, "classname"), attribute(*next, "name"), "", "", ""});
-        const XMLElement* const failure = next->FirstChildElement("failure");
-        if (failure == nullptr) continue;
-        ++failures;
-        test.type = attribute(*failure, "type");
-        test.message = attribute(*failure, "message");
-        test.text = failure->GetText();
-    }
-    for (const XMLElement* const counted : {suites, suite}) {
-        CHECK(attribute(*counted, "tests") == std::to_string(out.size()));
-        CHECK(attribute(*counted, "failures") == std::to_string(failures));
-        CHECK(attribute(*counted, "errors") == "0");
-    }
-    return out;
-}
 
 /// Returns whether a strict XML reader (Python's expat) accepts the file.
 bool is_strict_xml(const std::filesystem::path& file)
@@ -137,7 +94,7 @@ TEST_CASE("check --format junit has a test case for each pose, with its verdict 
     const std::string command = "check map --poses poses.csv --format junit --max-height 2" + husky_option;
     const ProgramRun run = arena(command + "--threads 1");
     CHECK(run.status == 0);
-    const std::vector<Case> cases = cases_of(run.out);
+    const std::vector<JunitTestCase> cases = cases_of(run.out);
     REQUIRE(cases.size() == 6);
     const std::vector<std::string> names = {"start", "wall", "lake", "sky", "cube", "away"},
                                    types = {"", "collision", "submerged", "aerial", "off_terrain", "outside"};
@@ -162,7 +119,7 @@ TEST_CASE("JUnit names are unique: from the column name, or else the number of t
     const Arena arena;
     arena.write("poses.csv", "name,x,y,z\na,0,3,0.1\n,0,3,0.1\na,0,3,0.1\nb,0,3,0.1\n");
     const std::string command = "check map --format junit --poses poses.csv" + husky_option;
-    std::vector<Case> cases = cases_of(arena(command).out);
+    std::vector<JunitTestCase> cases = cases_of(arena(command).out);
     REQUIRE(cases.size() == 4);
     CHECK(cases[0].name == "a (pose 1)");
     CHECK(cases[1].name == "pose 2");
@@ -192,7 +149,7 @@ TEST_CASE("reports with hostile names are valid XML and JSON")
     const std::string junit = bytes_of(folder / "a.xml");
     CHECK(std::none_of(junit.begin(), junit.end(), [](unsigned char c) { return c < ' ' && c != '\n'; }));
     CHECK_NOTHROW(nlohmann::json(junit).dump());  // throws if it is not UTF-8
-    const std::vector<Case> cases = cases_of(junit);
+    const std::vector<JunitTestCase> cases = cases_of(junit);
     REQUIRE(cases.size() == 5);
     CHECK(cases[0].name == "<&\"'>");
     CHECK(cases[1].name == "]]>  [31m");
@@ -261,9 +218,10 @@ TEST_CASE("reports of many poses, which are written in several pieces, are compl
     const std::string junit = arena(command + "junit" + husky_option).out;
     const std::string json = arena(command + "json" + husky_option).out;
     CHECK((junit.size() > 1100000 && json.size() > 1100000));  // a piece is 1 MB
-    const std::vector<Case> cases = cases_of(junit);
+    const std::vector<JunitTestCase> cases = cases_of(junit);
     REQUIRE(cases.size() == 6000);
-    CHECK(std::count_if(cases.begin(), cases.end(), [](const Case& test) { return test.type.empty(); }) == 2000);
+    CHECK(std::count_if(cases.begin(), cases.end(), [](const JunitTestCase& test) { return test.type.empty(); }) ==
+          2000);
     CHECK(cases[5999].name == "wall (pose 6000)");
     CHECK(nlohmann::json::parse(json)["poses"][5999]["row"] == 6000);
 }
@@ -314,7 +272,7 @@ TEST_CASE("check --settle writes how the robot rests at each pose")
     CHECK(report.at("poses")[1].at("reason") == "collision: it has no room to settle, because of thin_wall");
 
     const ProgramRun junit = arena("check map --poses poses.csv --settle --format junit -q" + husky_option);
-    const std::vector<Case> cases = cases_of(junit.out);
+    const std::vector<JunitTestCase> cases = cases_of(junit.out);
     REQUIRE(cases.size() == 3);
     CHECK(cases[1].message == "collision: it has no room to settle, because of thin_wall");
 }

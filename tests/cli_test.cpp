@@ -639,6 +639,57 @@ TEST_CASE("Ctrl-C ends a search for spawns with status 130, and writes those tha
     CHECK(part == whole);
 }
 
+TEST_CASE("an interrupted sample, search or list of pairs says so in its summary and in JSON")
+{
+    const Arena arena;
+    const std::string cases[] = {
+        "sample map -n 100000000 --stance level",
+        "sample map -n 100000000",
+        "search map -n 100000000 --min-distance 0 --max-failures 2000000000",
+        "sample map --pairs 20000 --min-path 1 --reach-step 0.4",
+    };
+    for (const std::string& arguments : cases) {
+        CAPTURE(arguments);
+        const bool is_pairs = arguments.find("--pairs") != std::string::npos;
+        fs::remove(arena / "out.json");
+        const ProgramRun run = interrupt_program(arena,
+                                                 arguments + " --format json -o out.json --summary s.json" + husky,
+                                                 SIGINT, is_pairs ? "sample [#" : " %");
+        CHECK(run.status == 130);
+        CHECK_THAT(run.err, Contains(": interrupted; ") && Contains(" were found and written"));
+        const auto report = nlohmann::json::parse(bytes_of(arena / "s.json")),
+                   json = nlohmann::json::parse(bytes_of(arena / "out.json"));
+        CHECK(report["interrupted"] == true);
+        CHECK(json["interrupted"] == true);
+        for (const auto* const out : {&report, &json})
+            if (out->contains("undecided_area")) CHECK((*out)["undecided_area"].is_null());
+    }
+    for (const std::string& options : {std::string("-n 3"), std::string("--pairs 3 --reach-step 0.4")}) {
+        const std::string out = arena("sample map --format json --summary s.json " + options + husky).out;
+        CHECK_FALSE(nlohmann::json::parse(out).contains("interrupted"));
+        CHECK_FALSE(nlohmann::json::parse(bytes_of(arena / "s.json")).contains("interrupted"));
+    }
+}
+
+TEST_CASE("a second Ctrl-C while the result is written leaves no part of a file")
+{
+    const Arena arena;
+    const auto is_writing = [&] {
+        for (const std::string& name : arena.names())
+            if (name.starts_with("part.csv.tmp-")) return true;
+        return false;
+    };
+    const ProgramRun run = interrupt_program_twice(
+        arena, "sample map -n 100000000 --yaw random --stance level -o part.csv" + husky, is_writing);
+    CHECK(run.status == 130);
+    if (run.err.find("nothing was written") != std::string::npos) {
+        CHECK(arena.names() == std::set<std::string>{"map"});
+    } else {  // it was complete before the second signal arrived
+        CHECK(arena.names() == std::set<std::string>{"map", "part.csv"});
+        CHECK_THAT(run.err, Contains(std::to_string(lines(bytes_of(arena / "part.csv")) - 1) + " spawns"));
+    }
+}
+
 TEST_CASE("Ctrl-C ends long work with status 130 and does not change old files")
 {
     const Arena arena;

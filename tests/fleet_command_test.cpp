@@ -137,6 +137,13 @@ TEST_CASE("files of a fleet for simulators have each robot with its own name and
     tinyxml2::XMLDocument mujoco;
     REQUIRE(mujoco.Parse(bodies.c_str()) == tinyxml2::XML_SUCCESS);
     CHECK_THAT(bodies, Contains("<body name=\"husky_3\"") && Contains("<key name=\"spawns\""));
+    // Only the carts have a mass in their file.
+    std::size_t with_mass = 0;
+    for (std::size_t at = 0; (at = bodies.find("<inertial pos", at)) != std::string::npos; ++at) ++with_mass;
+    CHECK(with_mass == 4);
+    CHECK_THAT(bodies, Contains("<inertial pos=\"0 0 0.2\" mass=\"20\" fullinertia=\"0.6 1 1.4 0 0 0\"/>"));
+    CHECK_THAT(arena.fleet("--format mujoco").err,
+               Contains("notice: husky has no mass and inertia of a rigid body in its file"));
     CHECK_THAT(arena.fleet("--format mujoco --keys together").out,
                !Contains("<body") && Contains("<key name=\"spawns\""));
     CHECK_THAT(arena.fleet("--format mujoco --keys each").err, Contains("--keys is each"));
@@ -205,13 +212,27 @@ TEST_CASE("sample --fill places robots until none has room")
     refuses("--fill --format thesis -o t", "--format thesis has no fleets");
 }
 
-TEST_CASE("Ctrl-C ends a fill, and nothing is written")
+TEST_CASE("Ctrl-C ends a fill or a fleet with status 130, and the robots that were placed are written")
 {
-    const Arena arena;
+    const FleetArena arena;
     const ProgramRun run = interrupt_program(
-        arena, "sample map --robot box:0.3,0.3,0.2 --yaw random --fill --fill-step 0.05 -o filled.csv");
+        arena,
+        "sample map --robot box:0.3,0.3,0.2 --yaw random --fill --fill-step 0.05 -o filled.csv --summary s.json");
     CHECK(run.status == 130);
-    CHECK_FALSE(std::filesystem::exists(arena / "filled.csv"));
+    const std::size_t filled = read_poses(arena / "filled.csv").poses.size();
+    CHECK_THAT(run.err, Contains("spawnfield sample: interrupted; " + std::to_string(filled) + " robots; ") &&
+                            Catch::Matchers::EndsWith("spawnfield: interrupted: " + std::to_string(filled) +
+                                                      " robots were found and written\n"));
+    CHECK(Json::parse(bytes_of(arena / "s.json"))["interrupted"] == true);
+    arena.write("fleet.yaml", head + "robots:\n- {name: a, robot: 'box:0.3,0.3,0.2', count: 1000000, yaw: random}\n");
+    const ProgramRun fleet = interrupt_program(arena, "sample map --fleet fleet.yaml --format json -o fleet.json");
+    CHECK(fleet.status == 130);
+    const Json json = Json::parse(bytes_of(arena / "fleet.json"));
+    CHECK(json["interrupted"] == true);
+    const std::size_t found = json["robots"].size();
+    CHECK((found > 0 && json["kinds"][0]["found"] == found));
+    CHECK_THAT(fleet.err, Catch::Matchers::EndsWith("spawnfield: interrupted: " + std::to_string(found) +
+                                                    " robots of 1000000 were found and written\n"));
 }
 
 TEST_CASE("all robots of a fleet with one_island stand on one side of a wall")
@@ -265,6 +286,28 @@ TEST_CASE("formations of a file stand in their shape, and a convoy drives from o
     const std::vector<Pose> cars = parse_poses(convoy.out, "fleet").poses;
     CHECK(cars[3].position.head<2>().isApprox(Eigen::Vector2d(-7.2, 1.7), 1e-9));
     CHECK(cars[0].position.x() > -6);
+}
+
+TEST_CASE("the ends of a convoy are checked before islands, whose words in the summary name their kind")
+{
+    const FleetArena arena(
+        head + "one_island: true\nrobots:\n- {name: a, robot: 'box:0.5,0.5,0.3', count: 3}\n" +
+        "- {name: b, robot: 'box:0.4,0.4,0.3', count: 2, formation: {shape: convoy, spacing: 1, from: [-7.2, 1.7], "
+        "to: [7, -7]}}\n");
+    const ProgramRun run = arena.fleet("--reach-step 0.4");
+    CHECK(run.status == 4);
+    CHECK_THAT(run.err,
+               Contains("fleet.yaml: robots \"b\" (line 5): to is 7,-7, where the robot can stand at none of 16 "
+                        "headings (at the first one: submerged); choose another place"));
+    const auto is_graph = [](const std::string& name) { return name.starts_with("reach-"); };
+    CHECK(std::ranges::none_of(names_in(arena / "map"), is_graph));  // no island was searched
+    std::string text = bytes_of(arena / "fleet.yaml");
+    text.replace(text.find("[7, -7]"), 7, "[2.9, 3.7]");
+    arena.write("fleet.yaml", text);
+    const ProgramRun complete = arena.fleet("--reach-step 0.4");
+    CHECK(complete.status == 0);
+    CHECK_THAT(complete.err, Contains("; a: ") && Contains("; b: ") && !Contains("a: b:"));
+    CHECK(std::ranges::any_of(names_in(arena / "map"), is_graph));
 }
 
 TEST_CASE("the example fleet of the training arena is complete")

@@ -6,6 +6,7 @@
 #include <spawnfield/fleet.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <set>
 
@@ -76,6 +77,52 @@ void check_slot(const FormationSlot& slot, double x, double y, double yaw)
 }
 
 }  // namespace
+
+TEST_CASE("a fleet that is stopped has the first robots of each kind, and formations complete or not at all")
+{
+    const TestMap map = map_of(floor_of(20));
+    std::vector<FleetKind> kinds;
+    kinds.push_back(kind_of(map, boxy({0.9, 0.9, 0.3}), 150, {.min_distance = 1.2, .random_yaw = true}));
+    kinds.push_back(kind_of(map, boxy({0.3, 0.3, 0.3}), std::nullopt, {.min_distance = 1.5}));
+    kinds.push_back(kind_of(map, boxy({0.4, 0.4, 0.3}), 12));
+    kinds[2].formation = Formation{.form = Form::Circle, .spacing = 1};
+    for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k].name = std::string(1, char('a' + k));
+    FleetOptions options{.min_distance = 0.5, .seed = 7};
+    const Fleet all = place_fleet(kinds, options);
+    REQUIRE_FALSE(all.is_stopped);
+    REQUIRE(all.kinds[2].found == 12);
+    std::set<std::size_t> sizes;
+    std::size_t stopped = 0;
+    for (const long asked : {0L, 20L, 40L, 60L, 100L, 300L, 1000L, 2000L, 1000000L}) {
+        CAPTURE(asked);
+        std::atomic<long> left{asked};
+        options.stop = [&] { return left.fetch_sub(1) <= 0; };
+        options.threads = int(asked % 3 + 1);
+        const Fleet part = place_fleet(kinds, options);
+        CHECK((part.kinds[2].found == 0 || part.kinds[2].found == 12));
+        sizes.insert(part.robots.size());
+        stopped += part.is_stopped;
+        if (!part.is_stopped) CHECK(text_of(part, kinds) == text_of(all, kinds));
+        for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+            const auto of_kind = [&](const Fleet& fleet) {
+                std::vector<FleetRobot> out;
+                for (const FleetRobot& robot : fleet.robots)
+                    if (robot.kind == kind) out.push_back(robot);
+                return out;
+            };
+            const std::vector<FleetRobot> some = of_kind(part), whole = of_kind(all);
+            REQUIRE(some.size() <= whole.size());
+            for (std::size_t i = 0; i < some.size(); ++i) {
+                CHECK(some[i].name == whole[i].name);
+                CHECK(some[i].spawn.position == whole[i].spawn.position);
+            }
+            CHECK((part.is_stopped || part.kinds[kind].proof.has_value() == all.kinds[kind].proof.has_value()));
+        }
+    }
+    CHECK(sizes.size() >= 4);
+    CHECK(sizes.contains(0));
+    CHECK((stopped >= 4 && stopped < 9));
+}
 
 TEST_CASE("rooms that hold one robot each hold exactly as many robots as there are rooms")
 {

@@ -117,7 +117,93 @@ TEST_CASE("poses from check are drawn by verdict, with their names")
     CHECK(std::find(texts.begin(), texts.end(), "2") != texts.end());
     const ProgramRun nothing_to_name = heatmap(arena, "-o b.svg --names");
     CHECK(nothing_to_name.status == 2);
-    CHECK(nothing_to_name.err == "spawnfield: --names needs --spawns, because it writes the names of spawns\n");
+    CHECK(nothing_to_name.err == "spawnfield: --names needs --spawns or --pairs, because it writes their names\n");
+}
+
+TEST_CASE("heatmap --fleet draws each spawn with the outline of its kind, from CSV and from JSON")
+{
+    const Arena arena;
+    arena.write("fleet.yaml",
+                "format: spawnfield-fleet/1\nrobots:\n- {name: truck, robot: 'box:1.2,0.8,0.3', count: 2}\n"
+                "- {name: cart, robot: 'box:0.4,0.4,0.3', count: 3}\n");
+    REQUIRE(arena("sample map --fleet fleet.yaml -o fleet.csv").status == 0);
+    REQUIRE(arena("sample map --fleet fleet.yaml --format json -o fleet.json").status == 0);
+    REQUIRE(heatmap(arena, "-o a.svg --spawns fleet.csv --fleet fleet.yaml --names").status == 0);
+    const std::vector<std::string> texts = texts_in(arena, "a.svg");
+    for (const char* const text : {"5 spawns", "2 truck", "3 cart", "truck_1", "cart_3"}) CHECK(has(texts, text));
+    REQUIRE(heatmap(arena, "-o b.svg --spawns fleet.json --fleet fleet.yaml --names").status == 0);
+    CHECK(bytes_of(arena / "a.svg") == bytes_of(arena / "b.svg"));
+
+    const auto refuses = [&](const std::string& options, const std::string& message, int status) {
+        CAPTURE(options);
+        const ProgramRun run = heatmap(arena, "-o none.svg " + options);
+        CHECK(run.status == status);
+        CHECK_THAT(run.err, Contains(message));
+        CHECK_FALSE(arena.names().contains("none.svg"));
+    };
+    refuses("--fleet fleet.yaml", "--fleet needs --spawns", 2);
+    arena.write("plain.csv", "x,y,z\n0,3,0.1\n");
+    refuses("--fleet fleet.yaml --spawns plain.csv", "plain.csv: column kind is missing, but --fleet needs it", 4);
+    arena.write("other.csv", "x,y,z,kind\n0,3,0.1,truck\n0,3,0.1,boat\n");
+    refuses("--fleet fleet.yaml --spawns other.csv",
+            "other.csv: pose 2: column kind is \"boat\", needs a kind of fleet.yaml: truck, cart", 4);
+    refuses("--fleet none.yaml --spawns fleet.csv", "none.yaml", 4);
+}
+
+TEST_CASE("with --floor or --z, only spawns, pairs and paths on that ground are drawn")
+{
+    const TempFolder folder;
+    folder.write("scene.yaml",
+                 "format: spawnfield-scene/1\nparts:\n"
+                 "  - {name: floor, label: terrain, box: [12, 12, 0.1], xyz: [0, 0, -0.05]}\n"
+                 "  - {name: deck, label: terrain, box: [6, 12, 0.1], xyz: [3, 0, 2.95]}\n");
+    REQUIRE(run_program(folder, "bake scene.yaml -o map").status == 0);
+    folder.write("spawns.csv", "name,x,y,z\nlow,-3,0,0.1\nunder,3,0,0.1\nhigh,3,2,3.1\n");
+    folder.write("pairs.csv", "start_x,start_y,start_z,goal_x,goal_y,goal_z\n-3,0,0.1,3,0,0.1\n3,2,3.1,-3,2,0.1\n");
+    folder.write("paths.csv", "pair,pose,x,y,z\n0,0,-3,0,0.1\n0,1,3,0,0.1\n1,0,3,2,3.1\n1,1,1,2,3.1\n1,2,-3,2,0.1\n");
+    const auto texts = [&](const std::string& options) {
+        const ProgramRun run = run_program(folder,
+                                           "heatmap map --robot box:0.5,0.5,0.3 --step 0.5 -o a.svg " + options);
+        CHECK(run.status == 0);
+        std::vector<std::string> out = svg_texts(bytes_of(folder / "a.svg"));
+        out.push_back(run.err);
+        return out;
+    };
+    const std::vector<std::string> all = texts("--spawns spawns.csv --names");
+    for (const char* const text : {"3 spawns", "low", "under", "high"}) CHECK(has(all, text));
+    const std::vector<std::string> upper = texts("--spawns spawns.csv --names --floor 1");
+    for (const char* const text :
+         {"1 spawn", "high", "notice: 2 of 3 spawns stand on ground at other heights, and are not drawn"})
+        CHECK(has(upper, text));
+    CHECK_FALSE((has(upper, "low") || has(upper, "under")));
+    const std::vector<std::string> lower = texts("--spawns spawns.csv --names --z :1");
+    for (const char* const text : {"2 spawns", "low", "under", "1 of 3 spawns stands on ground at another height"})
+        CHECK(has(lower, text));
+    const std::vector<std::string> pairs = texts("--pairs pairs.csv --paths paths.csv --floor 0 --names");
+    for (const char* const text : {"1 start", "2 goals", "1 path", "1 of 2 starts stands on ground at another height"})
+        CHECK(has(pairs, text));
+    const std::vector<std::string> high = texts("--pairs pairs.csv --paths paths.csv --floor 1");
+    for (const char* const text : {"1 start", "1 path"}) CHECK(has(high, text));
+    CHECK(has(high, "2 of 2 goals stand on ground at other heights"));
+    CHECK_FALSE(has(high, "0 goals"));
+}
+
+TEST_CASE("heatmap draws the pairs and paths that sample writes")
+{
+    const Arena arena;
+    REQUIRE(arena("sample map --pairs 6 --min-path 3 --reach-step 0.4 --path paths.csv -o pairs.csv" + husky_option)
+                .status == 0);
+    REQUIRE(heatmap(arena, "-o a.svg --pairs pairs.csv --paths paths.csv --names").status == 0);
+    const std::vector<std::string> texts = texts_in(arena, "a.svg");
+    for (const char* const text : {"6 starts", "6 goals", "6 paths"}) CHECK(has(texts, text));
+    const ProgramRun no_pair = heatmap(arena, "-o b.svg --paths pairs.csv");
+    CHECK(no_pair.status == 4);
+    const ProgramRun plain = heatmap(arena, "-o b.svg --pairs paths.csv");
+    CHECK(plain.status == 4);
+    CHECK_THAT(plain.err, Contains("paths.csv: line 1: column start_x is missing"));
+    arena.write("poses.csv", "x,y,z\n0,0,0\n");
+    CHECK_THAT(heatmap(arena, "-o b.svg --paths poses.csv").err, Contains("poses.csv: column pair is missing"));
+    CHECK_THAT(heatmap(arena, "-o b.svg --names").err, Contains("--names needs --spawns or --pairs"));
 }
 
 TEST_CASE("heat maps are the same bytes with any number of threads")

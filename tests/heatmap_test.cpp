@@ -737,6 +737,89 @@ TEST_CASE("names are written beside spawns, and names without room are counted")
     CHECK(contains(texts, std::to_string(written + 2) + " of 22 names shown: no room"));
 }
 
+TEST_CASE("spawns of several kinds have the outline and the colour of their own kind")
+{
+    const RasterResult raster = raster_of(
+        {"VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV"});  // 20 x 10 m
+    const Robot large = load_robot("box:2,1,0.5"), small = load_robot("box:0.6,1.2,0.5"),
+                other = load_robot("box:3,3,1");
+    HeatmapOptions options{
+        .spawns = {{{4, 5, 0}, 0}, {{10, 5, 0}, 0}, {{16, 5, 0}, pi / 2}, {{99, 5, 0}, 0}},
+        .spawn_names = {"a", "b", "c", "d"},
+        .kinds = {{"truck", &large}, {"unused", &other}, {"cart", &small}},
+        .spawn_kinds = {0, 2, 2, 2},
+        .robot = &other,
+    };
+    const Picture picture = draw(raster, options);
+    const double metre = picture.plot.width / picture.view.width;
+    const auto sizes = [&](std::size_t kind) {
+        char fill[8];
+        std::snprintf(fill, sizeof fill, "#%06x", kind_palette[kind]);
+        std::vector<cv::Size2d> out;
+        for (const auto& polygon : polygons_of(raster, options, fill)) out.push_back(size_of(polygon));
+        return out;
+    };
+    const auto check_size = [&](const cv::Size2d& size, double width, double height) {
+        CHECK(size.width == Approx(width * metre).margin(2));
+        CHECK(size.height == Approx(height * metre).margin(2));
+    };
+    const auto trucks = sizes(0), unused = sizes(1), carts = sizes(2);
+    REQUIRE((trucks.size() >= 2 && carts.size() == 3));  // in the plot and in the legend; white is also elsewhere
+    check_size(trucks[0], 2, 1);
+    check_size(carts[0], 0.6, 1.2);
+    check_size(carts[1], 1.2, 0.6);  // turned
+    CHECK(unused.empty());
+    CHECK(picture.at(3.3, 5) == rgb(kind_palette[0]));
+    CHECK(picture.at(10, 4.6) == rgb(kind_palette[2]));
+    const std::vector<std::string> texts = texts_of(raster, options);
+    for (const char* const text : {"3 of 4 spawns in view", "1 truck", "2 cart", "a", "b", "c"}) {
+        CAPTURE(text);
+        CHECK(contains(texts, text));
+    }
+    CHECK_FALSE(contains(texts, "0 unused"));
+    options.spawn_kinds.pop_back();
+    CHECK_THROWS_WITH(texts_of(raster, options), Contains("size of spawn_kinds is 3"));
+    options.spawn_kinds.push_back(3);
+    CHECK_THROWS_WITH(texts_of(raster, options), Contains("spawn_kinds is 3, needs less than the number of kinds, 3"));
+    options.spawn_kinds.back() = 0;
+    options.spawn_verdicts.resize(4);
+    CHECK_THROWS_WITH(texts_of(raster, options), Contains("spawns have one colour"));
+    // More kinds than colours: the last colour is shared.
+    options.spawn_verdicts.clear();
+    options.kinds.assign(12, {"k", &large});
+    options.spawn_kinds = {6, 7, 11, 0};
+    const Picture many = draw(raster, options);
+    CHECK(many.at(3.3, 5) == rgb(kind_palette[6]));
+    CHECK(many.at(9.3, 5) == rgb(kind_palette[7]));
+    CHECK(many.at(16, 4.3) == rgb(kind_palette[7]));
+}
+
+TEST_CASE("starts are discs, goals are diamonds, and paths are lines, each with a legend entry")
+{
+    const RasterResult raster = raster_of({"VVVVV", "VVVVV", "VVVVV"});  // 10 x 6 m
+    HeatmapOptions options{.starts = {{1, 1, 0}, {1, 5, 0}, {50, 1, 0}},
+                           .goals = {{9, 1, 0}, {9, 5, 0}},
+                           .start_names = {"one", "two", "three"},
+                           .paths = {{{1, 1, 0}, {5, 3, 0}, {9, 1, 0}}}};
+    const Picture picture = draw(raster, options);
+    for (const Vec3& start : options.starts)
+        if (start.x() < 10) CHECK(picture.at(start.x(), start.y()) == rgb(start_colour));
+    for (const Vec3& goal : options.goals) CHECK(picture.at(goal.x(), goal.y()) == rgb(goal_colour));
+    CHECK(picture.at(3, 2) == rgb(path_colour));  // the middles of its parts
+    CHECK(picture.at(7, 2) == rgb(path_colour));
+    CHECK(picture.at(5, 1) == valid);
+    const std::vector<std::string> texts = texts_of(raster, options);
+    for (const char* const text : {"2 of 3 starts in view", "2 goals", "1 path", "one", "two"}) {
+        CAPTURE(text);
+        CHECK(contains(texts, text));
+    }
+    CHECK_FALSE(contains(texts, "three"));
+    options.goal_names = {"a"};
+    CHECK_THROWS_WITH(texts_of(raster, options), Contains("size of goal_names is 1"));
+    options = {.paths = {{{1, 1, 0}}, {}}};
+    CHECK(contains(texts_of(raster, options), "2 paths"));  // too short to be seen
+}
+
 TEST_CASE("heat maps are SVG or PDF by the file extension, with texts as text")
 {
     const TempFolder folder;

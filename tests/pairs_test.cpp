@@ -1,4 +1,5 @@
 #include "catch.h"
+#include "junit_cases.h"
 #include "program.h"
 #include "rest_robots.h"
 #include "temp_folder.h"
@@ -8,8 +9,10 @@
 #include <spawnfield/pair_files.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 
 #include <nlohmann/json.hpp>
 #include <yaml-cpp/yaml.h>
@@ -61,6 +64,12 @@ public:
     }
 };
 
+/// Pairs of the two rooms: valid, unreachable, with a start in the wall, with a goal in the air, too direct.
+const std::string given_pairs =
+    "name,start_x,start_y,start_z,goal_x,goal_y,goal_z,pair_reason,goal_yaw_deg\n"
+    "a,-2,0,0.1,-1,0,0.1,old,90\nb,-2,0,0.1,1,0,0.1,old,0\n\"c, d\",0.22,0,0.1,-1,0,0.1,old,0\n"
+    ",-2,0,0.1,-1,0,5,old,0\n,0.22,1,0.1,-0.12,0.5,0.1,old,0\n";
+
 }  // namespace
 
 TEST_CASE("pairs are on one island, within the limits, and their path lengths are those of a search")
@@ -99,6 +108,27 @@ TEST_CASE("pairs are the same at any number of threads, and differ between seeds
     CHECK(one == text(2, 3));
     CHECK(one == text(8, 3));
     CHECK(one != text(1, 4));
+}
+
+TEST_CASE("pairs that are stopped are the first ones of the whole list")
+{
+    const Rooms rooms;
+    PairOptions options{.spawns = {.count = 400, .random_yaw = true, .seed = 5}, .min_path = 1, .max_path = 4};
+    const std::string all = pairs_csv(rooms(options), 0.02);
+    std::set<std::size_t> sizes;
+    for (const long asked : {0L, 10L, 400L, 1500L, 1600L, 1700L, 1800L, 100000L}) {
+        CAPTURE(asked);
+        std::atomic<long> left{asked};
+        options.spawns.stop = [&] { return left.fetch_sub(1) <= 0; };
+        options.spawns.threads = int(asked % 3 + 1);
+        const PairList part = rooms(options);
+        CHECK(all.starts_with(pairs_csv(part, 0.02)));
+        CHECK(part.is_stopped == (part.pairs.size() < 400));
+        CHECK(part.starts == part.pairs.size() + part.without_goal);
+        sizes.insert(part.pairs.size());
+    }
+    CHECK(sizes.size() >= 4);
+    CHECK((sizes.contains(0) && sizes.contains(400)));
 }
 
 TEST_CASE("goals are uniform by area among those that fit")
@@ -324,7 +354,8 @@ TEST_CASE("check --pairs accepts the pairs of sample, and adds its verdicts to t
     refuses("", "--poses is required, or --pairs");
     refuses("--pairs given.csv --poses given.csv", "--poses has no effect with --pairs");
     refuses("--pairs given.csv --repair 1", "--repair has no effect with --pairs");
-    refuses("--pairs given.csv --format json", "--pairs writes only csv");
+
+    refuses("--pairs given.csv --format xml", "--format: \"xml\" is not one of csv, json, junit");
     refuses("--pairs given.csv --stance level", "--pairs is only for settled robots");
     refuses("--pairs given.csv --min-path 2 --max-path 1", "--max-path is 1");
     refuses("--poses given.csv --detour 2", "--detour is only for --pairs");
@@ -334,6 +365,97 @@ TEST_CASE("check --pairs accepts the pairs of sample, and adds its verdicts to t
             4);
     rooms.write("bad.csv", "start_x,start_y,start_z,goal_x,goal_y,goal_z\n0,0,0,1,one,0\n");
     refuses("--pairs bad.csv", "bad.csv: line 2: column goal_y is \"one\", needs a number", 4);
+}
+
+TEST_CASE("check --pairs says why starts, goals and pairs are refused, and which part is hit")
+{
+    const RoomsFolder rooms;
+    rooms.write("given.csv", given_pairs);
+    const std::string command = "check rooms --robot box:0.3,0.3,0.2 --reach-step 0.2 --max-path 2.5 --pairs ";
+    const ProgramRun csv = run_program(rooms, command + "given.csv");
+    REQUIRE(csv.status == 0);
+    CHECK(csv.out.starts_with("name,start_x,start_y,start_z,goal_x,goal_y,goal_z,goal_yaw_deg,pair_verdict,"));
+    const PoseTable table = parse_pairs(csv.out, "given").starts;
+    const auto column = [&](const std::string& name) { return column_of(table, name); };
+    using Texts = std::vector<std::string>;
+    const std::string rests = "off_terrain: it comes to rest on wall";
+    CHECK(column("pair_verdict") ==
+          Texts{"valid", "unreachable", "start_not_valid", "goal_not_valid", "start_not_valid"});
+    CHECK(column("start_hit") == Texts{"", "", "wall", "", "wall"});
+    CHECK(column("goal_hit") == Texts{"", "", "", "", "wall"});
+    CHECK(column("start_reason") == Texts{"", "", rests, "", rests});
+    const std::string high = "aerial: 5 m above the ground, the limit is 1 m (--max-height)";
+    CHECK(column("goal_reason") == Texts{"", "", "", high, rests});
+    CHECK(column("pair_reason") == Texts{"", "unreachable: the start is on island 0, the goal on island 1",
+                                         "start_not_valid: " + rests, "goal_not_valid: " + high,
+                                         "start_not_valid: " + rests});
+
+    // Each pose of the reports is that of `check --poses` for the same pose.
+    std::string poses = "x,y,z,yaw_deg\n";
+    const PairTable given = parse_pairs(given_pairs, "given");
+    for (const std::string end : {"start", "goal"}) {
+        const PoseTable& ends = end == "start" ? given.starts : given.goals;
+        for (std::size_t i = 0; i < 5; ++i) {
+            const Vec3& p = ends.poses[i].position;
+            poses += std::to_string(p.x()) + "," + std::to_string(p.y()) + "," + std::to_string(p.z()) + "," +
+                     (end == "goal" && i == 0 ? "90\n" : "0\n");
+        }
+    }
+    rooms.write("poses.csv", poses);
+    const Json by_pose = Json::parse(
+        run_program(rooms, "check rooms --robot box:0.3,0.3,0.2 --settle --format json -p poses.csv").out);
+    const Json json = Json::parse(run_program(rooms, command + "given.csv --format json --threads 1").out);
+    CHECK(json["format"] == "spawnfield-pair-verdicts/1");
+    CHECK(json["settings"]["max_path"] == 2.5);
+    CHECK(json["settings"]["stance"] == "settled");
+    CHECK(json["counts"]["start_not_valid"] == 2);
+    CHECK(json["counts"]["too_long"] == 0);
+    REQUIRE(json["pairs"].size() == 5);
+    for (std::size_t i = 0; i < 5; ++i) {
+        CAPTURE(i);
+        const Json& row = json["pairs"][i];
+        CHECK(row["row"] == i + 1);
+        CHECK(row["verdict"] == column("pair_verdict")[i]);
+        CHECK((row["reason"].is_null() ? "" : row["reason"].get<std::string>()) == column("pair_reason")[i]);
+        CHECK((row["path_length"].is_null() == column("path_length")[i].empty()));
+        CHECK(row["columns"].size() == 8);  // without the replaced pair_reason
+        for (const std::string end : {"start", "goal"}) {
+            Json pose = by_pose["poses"][end == "start" ? i : 5 + i];
+            for (const char* const key : {"row", "columns"}) pose.erase(key);
+            CHECK(row[end] == pose);
+        }
+    }
+    CHECK(json["pairs"][0]["start_island"] == json["pairs"][0]["goal_island"]);
+    CHECK(json["pairs"][1]["start_island"] == 0);
+    CHECK(json["pairs"][1]["goal_island"] == 1);
+    CHECK(json["pairs"][2]["name"] == "c, d");
+
+    const ProgramRun junit = run_program(rooms, command + "given.csv --format junit --require-valid");
+    CHECK(junit.status == 3);
+    const std::vector<JunitTestCase> cases = cases_of(junit.out);
+    REQUIRE(cases.size() == 5);
+    CHECK(cases[0].class_name == "rooms.box:0.3,0.3,0.2");
+    CHECK(cases[0].type.empty());
+    CHECK(cases[1].name == "b");
+    CHECK(cases[3].name == "pair 4");
+    for (std::size_t i = 1; i < 5; ++i) {
+        CHECK(cases[i].type == column("pair_verdict")[i]);
+        CHECK(cases[i].message == column("pair_reason")[i]);
+    }
+    CHECK_THAT(cases[2].text,
+               Contains("row 3: \"c, d\",0.22,0,0.1,-1,0,0.1,old,0\nstart: " + rests +
+                        "\nposition 0.22, 0, 0.1 m; roll, pitch, yaw 0, 0, 0 rad\nground at 0 m") &&
+                   Contains("\nhit wall\ngoal: valid\nposition -1, 0, 0.1 m; roll, pitch, yaw 0, 0, 0 rad\n"
+                            "ground at 0 m, 0 m below the origin\n"));
+    CHECK_THAT(junit.out, Contains("<property name=\"max_path\" value=\"2.5\"/>"));
+    for (const char* const format : {"json", "junit"}) {
+        const std::string options = command + "given.csv --format " + format + " --threads ";
+        CHECK(run_program(rooms, options + "1").out == run_program(rooms, options + "8").out);
+    }
+    // The limits of paths are reasons, too.
+    const ProgramRun near = run_program(
+        rooms, "check rooms --robot box:0.3,0.3,0.2 --reach-step 0.2 --max-path 0.5 --pairs given.csv --format json");
+    CHECK(Json::parse(near.out)["pairs"][0]["reason"] == "too_long: the path is longer than 0.5 m (--max-path)");
 }
 
 TEST_CASE("faults in the options of pairs are named with their values and what to do")

@@ -156,6 +156,22 @@ TEST_CASE("the colours of islands differ from each other and from the ground bes
             }
 }
 
+TEST_CASE("the colours of kinds of robots differ from each other and from obstacles, in every kind of vision")
+{
+    std::vector<std::uint32_t> colours(kind_palette.begin(), kind_palette.end());
+    colours.push_back(obstacle_colour);
+    for (const Vision& vision : visions())
+        for (std::size_t i = 0; i < colours.size(); ++i) {
+            CAPTURE(vision.name, i);
+            CHECK(difference(seen(colours[i], vision), seen(verdict_palette[std::size_t(Verdict::Valid)], vision)) >=
+                  11);
+            for (std::size_t j = 0; j < i; ++j) {
+                CAPTURE(j);
+                CHECK(difference(seen(colours[i], vision), seen(colours[j], vision)) >= 11);
+            }
+        }
+}
+
 TEST_CASE("the other colours of a heat map differ from verdicts and from each other, in every kind of vision")
 {
     auto colours = coloured_verdicts();

@@ -304,6 +304,39 @@ TEST_CASE("a raster is written in its order, with the same bytes for any number 
     }
 }
 
+TEST_CASE("poses are read from the JSON files that commands write, as from their CSV files")
+{
+    const std::string head = "{\"format\": \"spawnfield-fleet-poses/1\", ";
+    const PoseTable table = parse_poses(
+        "\n " + head +
+            "\"robots\": [{\"name\": \"a,\\n\", \"kind\": \"k\", \"position\": [0.1, -2, 3e-7], "
+            "\"rpy\": [0.1, 0.2, 0.3]}, {\"position\": [1, 2, 3], \"rpy\": [0, 0, 7]}]}",
+        "f.json");
+    REQUIRE(table.poses.size() == 2);
+    CHECK(table.poses[0].position == Vec3(0.1, -2, 3e-7));
+    CHECK(table.poses[0].rotation == rotation_from_rpy(0.1, 0.2, 0.3));
+    CHECK(column_of(table, "name") == std::vector<std::string>{"a,", ""});
+    CHECK(column_of(table, "kind") == std::vector<std::string>{"k", ""});
+    CHECK(table.notices.size() == 1);  // more than a turn
+    const auto refuses = [&](const std::string& text, const std::string& message) {
+        CAPTURE(text);
+        CHECK_THROWS_WITH(parse_poses(text, "f.json"), Contains("f.json: ") && Contains(message));
+    };
+    refuses("{", "is not valid JSON");
+    refuses(head + "\"robots\": [{\"position\": [1e999, 0, 0]}]}", "is not valid JSON");
+    refuses("{\"format\": 3}",
+            "format is \"\", needs one with poses: spawnfield-spawns/1, spawnfield-verdicts/1, "
+            "spawnfield-fleet-poses/1");
+    refuses("{\"format\": \"spawnfield-pairs/1\"}", "format is \"spawnfield-pairs/1\"");
+    refuses(head + "\"poses\": []}", "robots is missing or no list");
+    refuses(head + "\"robots\": [3]}", "pose 1: is not an object");
+    refuses(head + "\"robots\": [{\"position\": [1, 2], \"rpy\": [0, 0, 0]}]}", "pose 1: position is missing, or");
+    refuses(head + "\"robots\": [{\"position\": [1, 2, 3], \"rpy\": [0, 0, null]}]}", "pose 1: rpy is missing, or");
+    refuses(head + "\"robots\": [{\"position\": [1, 2, 3], \"rpy\": [0, 0, 0], \"name\": 3}]}", "name is not a text");
+    refuses(head + "\"robots\": []}", "has a header but no pose");
+    CHECK(parse_poses(head + "\"robots\": []}", "f.json", true).poses.empty());
+}
+
 TEST_CASE("spawns as JSON have unit quaternions, names, their settings and their map")
 {
     SpawnList list;

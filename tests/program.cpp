@@ -52,7 +52,16 @@ ProgramRun limited_program(const TempFolder& folder, const std::string& argument
     return run(folder, "timeout --signal=KILL 120", arguments);
 }
 
-ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, int signal)
+namespace {
+
+/// The signals for interrupted_run().
+struct Interrupts {
+    int signal = SIGINT;
+    std::string bar = " %";                         ///< text of the progress bar at which the signal is sent
+    std::function<bool()> is_time_for_second = {};  ///< may be empty
+};
+
+ProgramRun interrupted_run(const TempFolder& folder, const std::string& arguments, Interrupts interrupts)
 {
     const std::string command = command_for(folder, "exec", arguments);
     termios settings{};  // all off: lines arrive as they were written
@@ -69,8 +78,16 @@ ProgramRun interrupt_program(const TempFolder& folder, const std::string& argume
     bool is_sent = false;
     for (auto deadline = Clock::now() + patience;;) {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+        const bool waits_for_second = is_sent && interrupts.is_time_for_second;
+        if (waits_for_second && interrupts.is_time_for_second()) {
+            kill(child, interrupts.signal);
+            interrupts.is_time_for_second = {};
+            continue;
+        }
         pollfd input{terminal, POLLIN, 0};
-        if (left <= 0 || poll(&input, 1, int(left)) <= 0) {
+        const int ready = left <= 0 ? 0 : poll(&input, 1, waits_for_second ? 1 : int(left));
+        if (ready <= 0 && left > 0 && waits_for_second) continue;
+        if (ready <= 0) {
             kill(child, SIGKILL);
             break;
         }
@@ -78,8 +95,8 @@ ProgramRun interrupt_program(const TempFolder& folder, const std::string& argume
         const ssize_t count = read(terminal, bytes, sizeof bytes);
         if (count <= 0) break;  // the program has ended
         err.append(bytes, std::size_t(count));
-        if (is_sent || err.find(" %") == std::string::npos) continue;
-        kill(child, signal);
+        if (is_sent || err.find(interrupts.bar) == std::string::npos) continue;
+        kill(child, interrupts.signal);
         is_sent = true;
         deadline = Clock::now() + patience;
     }
@@ -87,4 +104,17 @@ ProgramRun interrupt_program(const TempFolder& folder, const std::string& argume
     waitpid(child, &status, 0);
     close(terminal);
     return reported(arguments, {exit_status(status), taken(folder / ".out"), err});
+}
+
+}  // namespace
+
+ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, int signal, const std::string& bar)
+{
+    return interrupted_run(folder, arguments, {.signal = signal, .bar = bar});
+}
+
+ProgramRun interrupt_program_twice(const TempFolder& folder, const std::string& arguments,
+                                   const std::function<bool()>& is_time)
+{
+    return interrupted_run(folder, arguments, {.is_time_for_second = is_time});
 }

@@ -3,6 +3,7 @@
 #include "temp_folder.h"
 
 #include <csignal>
+#include <functional>
 
 /// The result of a run of the program.
 struct ProgramRun {
@@ -17,6 +18,11 @@ ProgramRun run_program(const TempFolder& folder, const std::string& arguments);
 /// make it wait for ever.
 ProgramRun limited_program(const TempFolder& folder, const std::string& arguments);
 
-/// Does the same with a terminal for standard error. Sends the signal when the first progress bar appears there, so in
-/// the middle of the work on any machine. Kills the program if it shows no bar, or does not end, within a minute.
-ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, int signal = SIGINT);
+/// Does the same with a terminal for standard error. Sends the signal when a progress bar with this text appears there,
+/// so in the middle of the work on any machine. Kills the program if it shows no bar, or does not end, within a minute.
+ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, int signal = SIGINT,
+                             const std::string& bar = " %");
+
+/// Does the same, and sends SIGINT again as soon as is_time() is true.
+ProgramRun interrupt_program_twice(const TempFolder& folder, const std::string& arguments,
+                                   const std::function<bool()>& is_time);

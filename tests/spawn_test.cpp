@@ -395,7 +395,7 @@ TEST_CASE("a query that is stopped returns the first spawns of the whole list")
         const SpawnList all = sample(judge, options);
         CHECK_FALSE(all.is_stopped);
         std::set<std::size_t> sizes;
-        for (const long asked : {0L, 1L, 1000L, 2000L, 5000L, 20000L}) {
+        for (const long asked : {0L, 1L, 10L, 50L, 100L, 200L, 20000L}) {
             std::atomic<long> left{asked};
             options.stop = [&] { return left.fetch_sub(1) <= 0; };
             options.threads = int(asked % 3 + 1);
@@ -403,6 +403,7 @@ TEST_CASE("a query that is stopped returns the first spawns of the whole list")
             CHECK(is_start_of(part, all));
             CHECK(part.is_stopped == (part.spawns.size() < options.count && left < 0));
             CHECK_FALSE((part.is_stopped && part.is_full));
+            CHECK(std::isnan(part.undecided_area) == part.is_stopped);
             sizes.insert(part.spawns.size());
         }
         CHECK(sizes.contains(0));
@@ -410,11 +411,37 @@ TEST_CASE("a query that is stopped returns the first spawns of the whole list")
     }
     SearchOptions options{.count = 1000, .min_distance = 0.5, .seed = 4};
     const SpawnList all = search(judge, options);
-    std::atomic<long> left{30000};
+    std::atomic<long> left{20};
     options.stop = [&] { return left.fetch_sub(1) <= 0; };
     const SpawnList part = search(judge, options);
     CHECK(part.is_stopped);
     CHECK(is_start_of(part, all));
+}
+
+TEST_CASE("a stop loses less than a block of draws that were judged")
+{
+    const TestMap map = training_map();
+    const Judge judge(map, husky());
+    for (const Stance stance : {Stance::Level, Stance::Settled}) {
+        const double block = stance == Stance::Settled ? 2048 : 65536;
+        for (const int threads : {1, 4}) {
+            SampleOptions options{.count = 1000000, .stance = stance, .threads = threads};
+            std::atomic<bool> is_time{false};
+            std::atomic<std::uint64_t> judged{0};
+            options.is_reachable = stance == Stance::Settled ? ReachFilter([&](const SettledPose&) {
+                if (++judged == 12345) is_time = true;  // in the middle of a batch
+                return true;
+            })
+                                                             : ReachFilter();
+            std::atomic<long> chunks{stance == Stance::Settled ? 1000000 : 2500};
+            options.stop = [&] { return chunks.fetch_sub(1) <= 0 || is_time; };
+            const SpawnList part = sample(judge, options);
+            REQUIRE(part.is_stopped);
+            // A chunk of 64 draws is judged whenever `stop` has returned false. It is also asked between batches.
+            const double draws = stance == Stance::Settled ? double(judged) : 64 * 2480.0;
+            CHECK(double(part.draws) > draws - block - 64 * threads);
+        }
+    }
 }
 
 TEST_CASE("filling a region gives the same bytes with any number of threads, and exhaustively")

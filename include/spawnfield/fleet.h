@@ -18,7 +18,7 @@ struct FleetKind {
     Judge judge;       ///< of the map, which all kinds share, and of this kind's robot
     std::optional<std::size_t> count = 1;  ///< 1 .. max_spawns; no value: as many as fit
     /// How robots of this kind are drawn. min_distance is that between two robots of this kind. These are not used:
-    /// count, seed, threads and progress. There must be no rules in `place` and `measures`.
+    /// count, seed, threads, progress and stop. There must be no rules in `place` and `measures`.
     SampleOptions spawns = {};
     std::optional<Formation> formation = {};  ///< then yaw and heading of `spawns` are not used; needs a count
     /// m between the columns of the raster that is searched if draws find no place; > 0. No value: auto_fill_step().
@@ -40,6 +40,9 @@ struct FleetOptions {
     std::uint64_t seed = 0;
     int threads = 0;  ///< 0: all cores; results are the same for any number
     Progress progress = {};
+    StopRequest stop = {};  ///< see Fleet::is_stopped
+
+    bool is_stopped() const { return stop && stop(); }
 };
 
 struct FleetRobot {
@@ -72,6 +75,9 @@ struct FleetKindResult {
 struct Fleet {
     std::vector<FleetRobot> robots;  ///< kind by kind
     std::vector<FleetKindResult> kinds;
+    /// Robots or proofs are missing because the options' `stop` returned true. The robots of each kind are the first
+    /// ones of the whole fleet; formations are complete or missing.
+    bool is_stopped = false;
 };
 
 /// Returns valid poses of several kinds of robots, none of which overlaps another one.

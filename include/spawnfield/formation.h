@@ -6,6 +6,7 @@
 #include <spawnfield/reach.h>
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace spawnfield {
@@ -48,6 +49,10 @@ SPAWNFIELD_API std::vector<FormationSlot> convoy_slots(const Formation& formatio
 
 /// Returns the length of the formation's path, seen from above, m.
 SPAWNFIELD_API double path_length(const Formation& formation);
+
+/// Throws ArgumentError if a robot that is let down at a place can stand at none of the 16 headings of the graph. Then
+/// drivable_path() finds no path. `what` is the name of the place in the message.
+SPAWNFIELD_API void check_standing(const Judge& judge, const std::string& what, const StartPlace& place);
 
 /// Returns the corners of a path on which the robot drives from one place to another, for Formation::path; z is the
 /// height of the ground. At both places, the robot is let down at the 16 headings of the graph; the first heading from

@@ -23,14 +23,27 @@ enum class HeatmapQuantity {
 /// Returns whether a quantity is about the robot at rest.
 inline bool is_of_rest(HeatmapQuantity quantity) { return quantity >= HeatmapQuantity::Tilt; }
 
+/// A kind of robot among the spawns of a picture.
+struct HeatmapKind {
+    std::string name;              ///< in the legend
+    const Robot* robot = nullptr;  ///< its outline; nullptr: arrows
+};
+
 struct HeatmapOptions {
     HeatmapQuantity quantity = HeatmapQuantity::Verdict;
     int pixels = 1000;               ///< length of the picture's longer side, 200 .. 16000
     std::vector<Spawn> spawns = {};  ///< drawn as footprints to scale, or as arrows in the direction of their yaw
     std::vector<Verdict> spawn_verdicts = {};   ///< one for each spawn, which sets its colour; or empty
     std::vector<std::string> spawn_names = {};  ///< one for each spawn, written beside it; or empty
-    std::string title = {};                     ///< first line of the picture; empty: the map's name
-    std::string caption = {};                   ///< second line: the robot and settings of the verdicts; may be empty
+    /// If the spawns are of several kinds of robots: the kinds, and the index of its kind for each spawn. Kinds have
+    /// the colours of kind_palette, and the eighth has the same colour as all that follow it. Not with spawn_verdicts.
+    std::vector<HeatmapKind> kinds = {};
+    std::vector<std::size_t> spawn_kinds = {};
+    std::vector<Vec3> starts = {}, goals = {};                   ///< of pairs: drawn as discs and as diamonds
+    std::vector<std::string> start_names = {}, goal_names = {};  ///< one for each start and goal, or empty
+    std::vector<std::vector<Vec3>> paths = {};                   ///< drawn as lines
+    std::string title = {};                                      ///< first line of the picture; empty: the map's name
+    std::string caption = {};  ///< second line: the robot and settings of the verdicts; may be empty
     /// The robot of the raster. Without a robot, spawns are arrows, and obstacles are those at the height of the
     /// origin.
     const Robot* robot = nullptr;
@@ -63,11 +76,12 @@ struct HeatmapOptions {
 /// a colour each, and the others share one; the number of an island is written where it has most room, if there
 /// is room. Pictures narrower than 12:1 get a white margin.
 ///
-/// Spawns are drawn as footprints if these are at least 6 pixels long. Otherwise they are arrows, or dots if arrows
-/// would be too close together. Names that would cover each other are left out; the legend contains the number of names
-/// that are shown. The colours of verdicts suit all kinds of colour vision. The colours of quantities are viridis
-/// (Smith, van der Walt, 2015). O(pixels + columns + poses + terrain cells * layers). Throws ArgumentError unless the
-/// options are within their limits, the raster has columns and its poses stand on them. Throws OutputError.
+/// Spawns are drawn as footprints, each with the outline of its own kind, if these are at least 6 pixels long.
+/// Otherwise they are arrows, or dots if arrows would be too close together. Names that would cover each other are left
+/// out; the legend contains the number of names that are shown. The colours of verdicts suit all kinds of colour
+/// vision. The colours of quantities are viridis (Smith, van der Walt, 2015). O(pixels + columns + poses + terrain
+/// cells * layers). Throws ArgumentError unless the options are within their limits, the raster has columns and its
+/// poses stand on them. Throws OutputError.
 SPAWNFIELD_API void write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult& raster,
                                   const HeatmapOptions& options, const std::filesystem::path& file);
 

@@ -19,10 +19,6 @@ struct PairTable {
 /// copied. Throws what parse_poses() throws.
 SPAWNFIELD_API PairTable parse_pairs(std::string_view text, const std::string& name, bool allow_empty = false);
 
-/// Returns the table with pair_verdict, start_verdict, goal_verdict (Verdict, by name), path_length, straight, detour
-/// and island (empty unless both are on it), in the place of columns with these names.
-SPAWNFIELD_API std::string judged_pairs_csv(const PairTable& table, const std::vector<JudgedPair>& pairs);
-
 /// Returns a table with start_x,start_y,start_z,start_roll,start_pitch,start_yaw, the same of the goal (goal_x, …), and
 /// path_length,straight,detour,island. m and rad; poses are raised by StandLimits::lift.
 SPAWNFIELD_API std::string pairs_csv(const PairList& list, double lift);

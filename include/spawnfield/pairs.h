@@ -14,6 +14,7 @@ namespace spawnfield {
 
 struct PairOptions {
     /// How starts and goals are drawn; `count` is the number of pairs. The stance must be Settled, and min_distance 0.
+    /// `stop`: see PairList::is_stopped.
     SampleOptions spawns = {};
     double min_path = 0;                                        ///< m, >= 0; shortest path from start to goal
     double max_path = std::numeric_limits<double>::infinity();  ///< m, >= min_path
@@ -24,6 +25,12 @@ struct PairOptions {
     bool keep_paths = false;  ///< whether StartGoal::path is filled
 };
 
+/// Returns how many times a path is as long as the straight line between its ends, >= 1.
+inline double detour_of(double path_length, double straight)
+{
+    return straight > 0 ? std::max(1.0, path_length / straight) : 1;
+}
+
 /// A start and a goal, both valid settled poses (not raised) on one island.
 struct StartGoal {
     SettledPose start = {}, goal = {};
@@ -32,8 +39,7 @@ struct StartGoal {
     std::size_t island = 0;              ///< index in ReachGraph::islands()
     std::vector<SettledPose> path = {};  ///< Path::poses, if they were wanted
 
-    /// Returns how many times the path is as long as the straight line, >= 1.
-    double detour() const { return straight > 0 ? std::max(1.0, path_length / straight) : 1; }
+    double detour() const { return detour_of(path_length, straight); }
 };
 
 struct PairList {
@@ -41,6 +47,8 @@ struct PairList {
     std::uint64_t starts = 0;        ///< number of starts that were drawn
     std::uint64_t without_goal = 0;  ///< of these, those for which no goal was found
     std::uint64_t searches = 0;      ///< number of paths that were searched
+    /// There are fewer pairs because `stop` returned true. They are the first ones of the whole list.
+    bool is_stopped = false;
 };
 
 /// Returns pairs of a start and a goal. Starts are drawn by sample(). Goals are drawn by sample(), too, until the path
@@ -74,8 +82,7 @@ struct JudgedPair {
 
     std::optional<double> detour() const
     {
-        if (!path_length || !straight) return std::nullopt;
-        return *straight > 0 ? std::max(1.0, *path_length / *straight) : 1;
+        return path_length && straight ? std::optional(detour_of(*path_length, *straight)) : std::nullopt;
     }
 };
 

@@ -59,6 +59,18 @@ void parallel_for(std::size_t count, int threads, const Progress& progress, cons
     arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), run); });
 }
 
+/// Calls body(i) for the first i < count, like parallel_for, until stop() returns true, and returns how many: body was
+/// called for each i below the result, and for no other one. Once stop() has returned true, it must always do so.
+template <class Stop, class Body>
+std::size_t parallel_until(std::size_t count, int threads, const Progress& progress, const Stop& stop, const Body& body)
+{
+    std::atomic<std::size_t> next{0};
+    parallel_for(count, threads, progress, [&](std::size_t) {
+        if (!stop()) body(next++);
+    });
+    return next;
+}
+
 /// Calls make(i, buffer) for each i < count, like parallel_for, and take(buffer) in the order of i, one at a time. A
 /// result is taken while others are made, and its buffer is used again. If one result takes long, those after it wait
 /// in memory.

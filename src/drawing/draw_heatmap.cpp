@@ -1,5 +1,6 @@
 #include "drawing/island_marks.h"
 #include "drawing/obstacle_mask.h"
+#include "drawing/pair_marks.h"
 #include "drawing/quantities.h"
 #include "drawing/relief.h"
 #include "drawing/spawn_marks.h"
@@ -62,6 +63,21 @@ void check_islands(const RasterResult& raster, const HeatmapOptions& options)
                                 "less than the number of island_areas, " + std::to_string(options.island_areas.size()));
 }
 
+void check_kinds(const HeatmapOptions& options)
+{
+    if (options.kinds.empty()) return;
+    if (options.spawn_kinds.size() != options.spawns.size())
+        throw ArgumentError("write_heatmap", "size of spawn_kinds", double(options.spawn_kinds.size()),
+                            "as many as spawns");
+    for (const std::size_t kind : options.spawn_kinds)
+        if (kind >= options.kinds.size())
+            throw ArgumentError("write_heatmap", "spawn_kinds", double(kind),
+                                "less than the number of kinds, " + std::to_string(options.kinds.size()));
+    if (!options.spawn_verdicts.empty())
+        throw ArgumentError("write_heatmap",
+                            "kinds and spawn_verdicts are both given, but spawns have one colour; leave one out");
+}
+
 void check(const RasterResult& raster, const HeatmapOptions& options)
 {
     const RasterGrid& grid = raster.grid;
@@ -75,6 +91,9 @@ void check(const RasterResult& raster, const HeatmapOptions& options)
         throw ArgumentError("write_heatmap", "headings", options.headings, "1 .. 255");
     check_size("spawn_verdicts", options.spawn_verdicts.size(), options.spawns.size(), "as many as spawns, or none");
     check_size("spawn_names", options.spawn_names.size(), options.spawns.size(), "as many as spawns, or none");
+    check_size("start_names", options.start_names.size(), options.starts.size(), "as many as starts, or none");
+    check_size("goal_names", options.goal_names.size(), options.goals.size(), "as many as goals, or none");
+    check_kinds(options);
     check_size("valid_headings", options.valid_headings.size(), raster.poses.size(),
                "as many as the raster's poses, or none");
     if (is_of_rest(options.quantity) && raster.rests.size() != raster.poses.size())
@@ -322,75 +341,174 @@ void draw_obstacles(Image& plot, const cv::Mat_<std::uint8_t>& obstacles, const 
 
 // ---------------------------------------------------------------- spawns
 
-/// The spawns whose origin is in the view, with their places in the picture.
-struct VisibleSpawns {
-    std::vector<std::size_t> indices;
-    std::vector<cv::Point2d> places;
+/// Converts places on the ground to places in the picture.
+class PlotPlaces {
+public:
+    PlotPlaces(const View& view, const cv::Rect& plot) : view_(view), plot_(plot) {}
+
+    cv::Point2d at(const Vec3& point) const
+    {
+        return {plot_.x + across(point) * plot_.width, plot_.y + down(point) * plot_.height};
+    }
+    bool sees(const Vec3& point) const
+    {
+        return across(point) >= 0 && across(point) <= 1 && down(point) >= 0 && down(point) <= 1;
+    }
+
+private:
+    double across(const Vec3& point) const { return (point.x() - view_.x0) / view_.width; }
+    double down(const Vec3& point) const { return (view_.y0 + view_.height - point.y()) / view_.height; }
+
+    const View view_;
+    const cv::Rect plot_;
 };
 
-VisibleSpawns visible_spawns(const std::vector<Spawn>& spawns, const View& view, const cv::Rect& plot)
+/// Returns the indices of the spawns whose origin is in the view.
+std::vector<std::size_t> visible_spawns(const std::vector<Spawn>& spawns, const PlotPlaces& places)
 {
-    VisibleSpawns visible;
-    for (std::size_t i = 0; i < spawns.size(); ++i) {
-        const double across = (spawns[i].position.x() - view.x0) / view.width,
-                     down = (view.y0 + view.height - spawns[i].position.y()) / view.height;
-        if (!(across >= 0 && across <= 1 && down >= 0 && down <= 1)) continue;
-        visible.indices.push_back(i);
-        visible.places.emplace_back(plot.x + across * plot.width, plot.y + down * plot.height);
-    }
-    return visible;
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < spawns.size(); ++i)
+        if (places.sees(spawns[i].position)) out.push_back(i);
+    return out;
+}
+
+Colour colour_of_kind(std::size_t kind) { return rgb(kind_palette[std::min(kind, kind_palette.size() - 1)]); }
+
+/// Returns the kind of a spawn; 0 if all are of one kind.
+std::size_t kind_of_spawn(const HeatmapOptions& options, std::size_t spawn)
+{
+    return options.kinds.empty() ? 0 : options.spawn_kinds[spawn];
 }
 
 Colour spawn_colour(const HeatmapOptions& options, std::size_t spawn)
 {
-    return options.spawn_verdicts.empty() ? white : colour_of(kind_of(options.spawn_verdicts[spawn]));
+    return options.spawn_verdicts.empty() ? colour_of_kind(kind_of_spawn(options, spawn))
+                                          : colour_of(kind_of(options.spawn_verdicts[spawn]));
 }
 
-/// Adds the text "12 of 30 spawns in view", with the symbols of their verdicts. The symbols draw nothing until
-/// draw_spawns() sets their look.
-void append_spawns(const HeatmapOptions& options, const VisibleSpawns& visible, Legend& legend)
+/// Returns how the spawns of each kind are drawn.
+std::vector<SpawnLook> spawn_looks(const HeatmapOptions& options, const Layout& layout, double scale, std::size_t count)
 {
-    const std::size_t all = options.spawns.size(), seen = visible.indices.size();
-    if (all == 0) return;
-    const std::string text = seen == all ? counted(all, "spawn")
-                                         : with_commas(seen) + " of " + counted(all, "spawn") + " in view";
-    const auto later = [](Figure&, cv::Point2d) {};
-    if (options.spawn_verdicts.empty()) {
-        legend.symbols.push_back({text, later});
-        return;
+    std::vector<SpawnLook> out;
+    for (const HeatmapKind& kind : options.kinds) out.push_back(spawn_look(kind.robot, layout, scale, count));
+    if (out.empty()) out.push_back(spawn_look(options.robot, layout, scale, count));
+    return out;
+}
+
+std::string count_in_view(std::size_t seen, std::size_t all, const std::string& noun)
+{
+    return seen == all ? counted(all, noun) : with_commas(seen) + " of " + counted(all, noun) + " in view";
+}
+
+/// Returns the legend's symbols of the spawns, by kind or by verdict. Before the layout is known, there are no looks;
+/// then the symbols cannot be drawn.
+std::vector<LegendSymbol> spawn_symbols(const HeatmapOptions& options, const std::vector<std::size_t>& visible,
+                                        const std::vector<SpawnLook>& looks)
+{
+    std::vector<LegendSymbol> out;
+    if (options.spawns.empty()) return out;
+    const auto add = [&](const std::string& name, std::size_t kind, Colour colour) {
+        const SpawnLook look = looks.empty() ? SpawnLook{} : looks[kind];
+        out.push_back({name, [=](Figure& into, cv::Point2d centre) { draw_spawn_symbol(into, look, centre, colour); }});
+    };
+    const std::string text = count_in_view(visible.size(), options.spawns.size(), "spawn");
+    if (options.kinds.empty() && options.spawn_verdicts.empty()) {
+        add(text, 0, colour_of_kind(0));
+        return out;
     }
-    legend.symbols.push_back({text});
-    for (auto verdict = all_verdicts.rbegin(); verdict != all_verdicts.rend(); ++verdict) {
-        const auto count = std::count_if(visible.indices.begin(), visible.indices.end(),
-                                         [&](std::size_t i) { return options.spawn_verdicts[i] == *verdict; });
+    out.push_back({text});
+    for (std::size_t kind = 0; kind < options.kinds.size(); ++kind) {
+        const auto count = std::ranges::count(visible, kind, [&](std::size_t i) { return options.spawn_kinds[i]; });
         if (count > 0)
-            legend.symbols.push_back(
-                {with_commas(static_cast<std::uint64_t>(count)) + ' ' + name_of(kind_of(*verdict), {}), later,
-                 colour_of(kind_of(*verdict))});
+            add(with_commas(std::uint64_t(count)) + ' ' + options.kinds[kind].name, kind, colour_of_kind(kind));
     }
+    if (options.spawn_verdicts.empty()) return out;
+    for (auto verdict = all_verdicts.rbegin(); verdict != all_verdicts.rend(); ++verdict) {
+        const auto count = std::ranges::count(visible, *verdict,
+                                              [&](std::size_t i) { return options.spawn_verdicts[i]; });
+        if (count > 0)
+            add(with_commas(std::uint64_t(count)) + ' ' + name_of(kind_of(*verdict), {}), 0,
+                colour_of(kind_of(*verdict)));
+    }
+    return out;
 }
 
-void draw_spawns(Figure& figure, const HeatmapOptions& options, const VisibleSpawns& visible, const SpawnLook& look,
-                 const Layout& layout, Legend& legend)
+/// Draws the spawns, and returns their marks for write_names().
+std::vector<NamedMark> draw_spawns(Figure& figure, const HeatmapOptions& options,
+                                   const std::vector<std::size_t>& visible, const PlotPlaces& places,
+                                   const std::vector<SpawnLook>& looks)
 {
-    for (LegendSymbol& symbol : legend.symbols)
-        if (symbol.draw)
-            symbol.draw = [=, colour = symbol.colour](Figure& into, cv::Point2d centre) {
-                draw_spawn_symbol(into, look, centre, colour);
-            };
-    clip(figure, layout.plot);
-    for (std::size_t k = 0; k < visible.indices.size(); ++k)
-        draw_spawn(figure, look, visible.places[k], options.spawns[visible.indices[k]].yaw,
-                   spawn_colour(options, visible.indices[k]));
-    clip(figure, {});
-    if (options.spawn_names.empty()) return;
-    std::vector<std::string> names;
-    for (const std::size_t i : visible.indices) names.push_back(options.spawn_names[i]);
-    const std::size_t written = write_names(figure, look, visible.places, names, layout.plot);
-    if (written < names.size())
-        legend.symbols.back().name = with_commas(written) + " of " + counted(names.size(), "name") + " shown: no room";
+    std::vector<NamedMark> out;
+    for (const std::size_t i : visible) {
+        const SpawnLook& look = looks[kind_of_spawn(options, i)];
+        const cv::Point2d place = places.at(options.spawns[i].position);
+        draw_spawn(figure, look, place, options.spawns[i].yaw, spawn_colour(options, i));
+        if (!options.spawn_names.empty()) out.push_back({place, radius_of(look), options.spawn_names[i]});
+    }
+    return out;
+}
+
+// ---------------------------------------------------------------- the whole picture
+
+bool has_names(const HeatmapOptions& options)
+{
+    return !options.spawn_names.empty() || !options.start_names.empty() || !options.goal_names.empty();
+}
+
+/// Writes the names of the marks. Updates the last symbol of the legend, which is reserved for names without room.
+void write_all_names(Figure& figure, const std::vector<NamedMark>& marks, const Layout& layout, Legend& legend)
+{
+    const std::size_t written = write_names(figure, layout.unit, marks, layout.plot);
+    if (written < marks.size())
+        legend.symbols.back().name = with_commas(written) + " of " + counted(marks.size(), "name") + " shown: no room";
     else
         legend.symbols.pop_back();
+}
+
+/// Returns the legend's symbols of spawns and pairs.
+std::vector<LegendSymbol> all_symbols(const HeatmapOptions& options, const View& view,
+                                      const std::vector<std::size_t>& visible, const std::vector<SpawnLook>& looks,
+                                      double unit)
+{
+    std::vector<LegendSymbol> out = spawn_symbols(options, visible, looks);
+    const PlotPlaces whole(view, {0, 0, 1, 1});
+    const auto seen = [&](const std::vector<Vec3>& points) {
+        return std::size_t(std::ranges::count_if(points, [&](const Vec3& point) { return whole.sees(point); }));
+    };
+    const auto add = [&](PairMark mark, std::size_t in_view, std::size_t all, const std::string& noun) {
+        if (all == 0) return;
+        out.push_back({count_in_view(in_view, all, noun),
+                       [=](Figure& into, cv::Point2d centre) { draw_pair_symbol(into, mark, centre, unit); }});
+    };
+    add(PairMark::Start, seen(options.starts), options.starts.size(), "start");
+    add(PairMark::Goal, seen(options.goals), options.goals.size(), "goal");
+    add(PairMark::Path, options.paths.size(), options.paths.size(), "path");
+    if (has_names(options)) out.push_back({"names: no room for all of them"});  // reserves a line in the layout
+    return out;
+}
+
+/// Draws paths, starts and goals, and returns the marks of these for write_names().
+std::vector<NamedMark> draw_pairs(Figure& figure, const HeatmapOptions& options, const PlotPlaces& places,
+                                  const Layout& layout)
+{
+    const double radius = pair_mark_radius(layout, options.starts.size() + options.goals.size());
+    for (const std::vector<Vec3>& path : options.paths) {
+        std::vector<cv::Point2d> line;
+        for (const Vec3& point : path) line.push_back(places.at(point));
+        draw_path(figure, line, layout.unit);
+    }
+    std::vector<NamedMark> out;
+    const auto draw = [&](PairMark mark, const std::vector<Vec3>& points, const std::vector<std::string>& names) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (!places.sees(points[i])) continue;
+            const cv::Point2d place = places.at(points[i]);
+            draw_pair_mark(figure, mark, place, radius, layout.unit);
+            if (!names.empty()) out.push_back({place, radius, names[i]});
+        }
+    };
+    draw(PairMark::Goal, options.goals, options.goal_names);
+    draw(PairMark::Start, options.starts, options.start_names);
+    return out;
 }
 
 }  // namespace
@@ -423,10 +541,8 @@ void drawing_module::write_heatmap(const Map& map, const TerrainMap& terrain, co
         colours = quantity_colours(kinds, values, scale);
         frame.legend = quantity_legend(raster, kinds, scale, options);
     }
-    append_spawns(options, visible_spawns(options.spawns, frame.view, {0, 0, 1, 1}), frame.legend);
-    if (!options.spawn_names.empty())
-        frame.legend.symbols.push_back({"names: no room for all of them"});  // reserves a line in the layout
-
+    const std::vector<std::size_t> visible = visible_spawns(options.spawns, {frame.view, {0, 0, 1, 1}});
+    frame.legend.symbols = all_symbols(options, frame.view, visible, {}, 1);
     const Layout layout = lay_out(frame);
     Image plot = draw_columns(colours, columns, frame.view, layout.plot.size());
     const float depth = options.quantity == HeatmapQuantity::Verdict
@@ -435,13 +551,18 @@ void drawing_module::write_heatmap(const Map& map, const TerrainMap& terrain, co
     shade(plot, relief(terrain.frame, highest_within(terrain, raster.z), frame.view, plot.size()), depth);
     const GridFrame fine = fine_frame(frame.view, plot.size());
     draw_obstacles(plot, obstacle_mask(map.geometry, fine, search), fine, columns, frame.view);
-    const VisibleSpawns visible = visible_spawns(options.spawns, frame.view, layout.plot);
-    const SpawnLook look = spawn_look(options.robot, layout, plot.cols / frame.view.width, visible.indices.size());
+    const PlotPlaces places(frame.view, layout.plot);
+    const auto looks = spawn_looks(options, layout, plot.cols / frame.view.width, visible.size());
+    frame.legend.symbols = all_symbols(options, frame.view, visible, looks, layout.unit);
 
     Figure figure{layout.size, {}};
     draw_image(figure, layout.plot.tl(), plot);
     if (!islands.numbers.empty()) write_island_numbers(figure, islands, columns, frame.view, layout);
-    draw_spawns(figure, options, visible, look, layout, frame.legend);
+    clip(figure, layout.plot);
+    std::vector<NamedMark> marks = draw_pairs(figure, options, places, layout);
+    for (NamedMark& mark : draw_spawns(figure, options, visible, places, looks)) marks.push_back(std::move(mark));
+    clip(figure, {});
+    if (has_names(options)) write_all_names(figure, marks, layout, frame.legend);
     draw_surroundings(figure, frame, layout);
     write_figure(figure, format, file);
 }

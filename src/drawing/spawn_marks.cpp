@@ -123,7 +123,8 @@ void draw_arrow(Figure& figure, cv::Point2d centre, double yaw, const SpawnLook&
     draw_polygon(figure, corners, colour, ink, 1.4 * look.unit);
 }
 
-/// Returns the distance of a mark's farthest point from its place, pixels.
+}  // namespace
+
 double radius_of(const SpawnLook& look)
 {
     double radius = look.footprint.empty() ? std::max(3.0, 0.6 * look.arrow) * look.unit : 0;
@@ -131,8 +132,6 @@ double radius_of(const SpawnLook& look)
         for (const Vec2& corner : part) radius = std::max(radius, corner.norm() * look.scale);
     return radius;
 }
-
-}  // namespace
 
 SpawnLook spawn_look(const Robot* robot, const Layout& layout, double scale, std::size_t count)
 {
@@ -171,23 +170,21 @@ void draw_spawn_symbol(Figure& figure, const SpawnLook& look, cv::Point2d centre
     draw_footprint(figure, look, {{centre.x - scale * middle.x(), centre.y + scale * middle.y()}, 0, scale}, colour);
 }
 
-std::size_t write_names(Figure& figure, const SpawnLook& look, const std::vector<cv::Point2d>& places,
-                        const std::vector<std::string>& names, const cv::Rect& area)
+std::size_t write_names(Figure& figure, double unit, const std::vector<NamedMark>& marks, const cv::Rect& area)
 {
-    const double cap = std::max(9 * look.unit, 5.0), radius = radius_of(look), away = radius + 0.5 * cap;
+    const double cap = std::max(9 * unit, 5.0);
     TextRoom room(area, cap);
-    for (const cv::Point2d& place : places)
+    for (const auto& [place, radius, name] : marks)
         room.add_mark({place.x - 0.7 * radius, place.y - 0.7 * radius, 1.4 * radius, 1.4 * radius});
     std::size_t written = 0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const double width = text_width(names[i], cap);
-        const cv::Point2d& place = places[i];
+    for (const auto& [place, radius, name] : marks) {
+        const double width = text_width(name, cap), away = radius + 0.5 * cap;
         // Lower left corners of the text: to the right, to the left, above, below.
         for (const cv::Point2d& corner :
              {cv::Point2d(place.x + away, place.y + cap / 2), cv::Point2d(place.x - away - width, place.y + cap / 2),
               cv::Point2d(place.x - width / 2, place.y - away),
               cv::Point2d(place.x - width / 2, place.y + away + cap)}) {
-            if (!room.draw(figure, names[i], corner)) continue;
+            if (!room.draw(figure, name, corner)) continue;
             ++written;
             break;
         }

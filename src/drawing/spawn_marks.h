@@ -27,9 +27,18 @@ void draw_spawn(Figure& figure, const SpawnLook& look, cv::Point2d place, double
 /// Draws the same mark around `centre`, as a symbol of the legend.
 void draw_spawn_symbol(Figure& figure, const SpawnLook& look, cv::Point2d centre, Colour colour);
 
-/// Writes each name beside its place, if there is room in the area where it covers no mark and no other name. Returns
+/// Returns the distance of a mark's farthest point from its place, pixels.
+double radius_of(const SpawnLook& look);
+
+/// A mark in the plot, and the name to be written beside it.
+struct NamedMark {
+    cv::Point2d place;
+    double radius;  ///< pixels
+    std::string name;
+};
+
+/// Writes each name beside its mark, if there is room in the area where it covers no mark and no other name. Returns
 /// how many names it wrote.
-std::size_t write_names(Figure& figure, const SpawnLook& look, const std::vector<cv::Point2d>& places,
-                        const std::vector<std::string>& names, const cv::Rect& area);
+std::size_t write_names(Figure& figure, double unit, const std::vector<NamedMark>& marks, const cv::Rect& area);
 
 }  // namespace spawnfield

@@ -62,7 +62,7 @@ public:
         : kinds_(kinds), options_(options), placed_(kinds, options), found_(kinds.size())
     {
         out_.kinds.resize(kinds.size());
-        // Draws and rasters report the share of all robots, and can be stopped.
+        // Draws and rasters report the share of all robots, and can be ended by an exception of the progress.
         if (options.progress) options_.progress = [this, &options](double) { options.progress(share_); };
         for (const FleetKind& kind : kinds) poses_.emplace_back(kind, options_);
     }
@@ -70,17 +70,26 @@ public:
 
     Fleet run()
     {
-        for (const Group& group : groups()) place_group(group);
-        for (const std::size_t kind : in_order()) {
-            if (kinds_[kind].formation || options_.formation) continue;
-            draw(kind);
-            if (is_missing(kind)) search_raster(kind);
+        try {
+            for (const Group& group : groups()) place_group(group);
+            for (const std::size_t kind : in_order()) {
+                if (kinds_[kind].formation || options_.formation) continue;
+                draw(kind);
+                if (is_missing(kind)) search_raster(kind);
+            }
+        } catch (const FleetStopped&) {
+            out_.is_stopped = true;
         }
         for (std::size_t kind = 0; kind < kinds_.size(); ++kind) append_robots(kind);
         return std::move(out_);
     }
 
 private:
+    void end_if_stopped() const
+    {
+        if (options_.is_stopped()) throw FleetStopped{};
+    }
+
     /// Returns the formations, those at a given place first.
     std::vector<Group> groups() const
     {
@@ -149,6 +158,7 @@ private:
                 result.too_close += room == PlacedRobots::Room::TooClose;
                 if (room == PlacedRobots::Room::Clear) add(kind, stand);
             }
+            if (is_missing(kind)) end_if_stopped();
             const bool gives_few = double(found_[kind].size() - before) < least_share * double(batch);
             if (stands.size() < batch || (batch >= fair_batch && gives_few)) return;
         }
@@ -164,6 +174,7 @@ private:
             for (const Stand& stand : stands) {
                 if (placed_.room_for(kind, stand.spawn) == PlacedRobots::Room::Clear) add(kind, stand);
                 if (!is_missing(kind)) return;
+                end_if_stopped();
             }
         }
         out_.kinds[kind].proof = proof;
@@ -221,6 +232,7 @@ private:
                 ++result.draws;
                 if (try_around(group, stand)) return;
             }
+            end_if_stopped();
             if (stands.size() < batch) break;
         }
         FleetProof proof{.step = poses_[kind].step(), .headings = KindPoses::random_headings};
@@ -258,6 +270,7 @@ private:
         std::vector<Stand> stands;
         std::optional<double> level;  // of the first robot's ground
         for (std::size_t i = 0; i < slots.size(); ++i) {
+            end_if_stopped();
             const std::size_t kind = group.kinds[i];
             FormationSlot slot = slots[i];
             if (!slot.z) slot.z = level;

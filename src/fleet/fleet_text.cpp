@@ -57,6 +57,7 @@ std::string fleet_json(const Fleet& fleet, std::span<const FleetKind> kinds, con
         settings["between"].push_back(
             {{"kinds", {kinds[pair.first].name, kinds[pair.second].name}}, {"distance", pair.distance}});
     Json out = json_head("sample", kinds[0].judge.map(), {}, std::move(settings), "spawnfield-fleet-poses/1");
+    if (fleet.is_stopped) out["interrupted"] = true;
     out["kinds"] = Json::array();
     for (std::size_t kind = 0; kind < kinds.size(); ++kind)
         out["kinds"].push_back(kind_json(kinds[kind], fleet.kinds[kind]));

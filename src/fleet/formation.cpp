@@ -50,8 +50,8 @@ std::vector<Vec3> distinct_corners(const std::vector<Vec3>& path)
     return out;
 }
 
-/// Returns the settled poses at a place, at all headings at which the robot can stand and belongs to an island.
-std::vector<SettledPose> poses_at(const Judge& judge, const ReachGraph& graph, const StartPlace& place)
+/// Returns how the robot rests at a place, at each heading.
+std::vector<SettledPose> rests_at(const Judge& judge, const StartPlace& place)
 {
     constexpr int headings = 16;
     double z = 0;
@@ -61,13 +61,22 @@ std::vector<SettledPose> poses_at(const Judge& judge, const ReachGraph& graph, c
              !layers.empty())
         z = layers.front();
     std::vector<SettledPose> out;
-    for (int k = 0; k < headings; ++k) {
-        const SettledPose pose = judge.settle({place.x, place.y, z}, heading_of(k, headings));
-        if (pose.verdict == Verdict::Valid && graph.island_of(pose)) out.push_back(pose);
-    }
+    for (int k = 0; k < headings; ++k) out.push_back(judge.settle({place.x, place.y, z}, heading_of(k, headings)));
+    return out;
+}
+
+/// Returns the settled poses at a place, at all headings at which the robot can stand and belongs to an island.
+std::vector<SettledPose> poses_at(const Judge& judge, const ReachGraph& graph, const std::string& what,
+                                  const StartPlace& place)
+{
+    check_standing(judge, what, place);
+    std::vector<SettledPose> out = rests_at(judge, place);
+    std::erase_if(out,
+                  [&](const SettledPose& pose) { return pose.verdict != Verdict::Valid || !graph.island_of(pose); });
     if (out.empty())
-        throw ArgumentError("drivable_path", "the robot can stand at none of the 16 headings at " + to_string(place) +
-                                                 ", or cannot drive from there");
+        throw ArgumentError("drivable_path", what + " is " + to_string(place) +
+                                                 ", where the robot can stand, but from where it cannot drive; choose "
+                                                 "another place, or give a smaller reach step");
     return out;
 }
 
@@ -120,10 +129,20 @@ std::vector<FormationSlot> convoy_slots(const Formation& formation, std::size_t 
     return out;
 }
 
+void check_standing(const Judge& judge, const std::string& what, const StartPlace& place)
+{
+    const std::vector<SettledPose> rests = rests_at(judge, place);
+    if (std::ranges::any_of(rests, [](const SettledPose& pose) { return pose.verdict == Verdict::Valid; })) return;
+    throw ArgumentError("check_standing", what + " is " + to_string(place) +
+                                              ", where the robot can stand at none of 16 headings (at the first one: " +
+                                              judge.describe(rests[0]) + "); choose another place");
+}
+
 std::vector<Vec3> drivable_path(const Judge& judge, const ReachGraph& graph, const StartPlace& from,
                                 const StartPlace& to)
 {
-    const std::vector<SettledPose> starts = poses_at(judge, graph, from), goals = poses_at(judge, graph, to);
+    const std::vector<SettledPose> starts = poses_at(judge, graph, "from", from),
+                                   goals = poses_at(judge, graph, "to", to);
     PathSearch search(graph);
     for (const SettledPose& start : starts)
         for (const SettledPose& goal : goals) {

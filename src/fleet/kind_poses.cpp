@@ -77,6 +77,7 @@ std::vector<Stand> KindPoses::drawn(const SampleOptions& wanted, FleetKindResult
     options.min_distance = 0;
     options.threads = options_.threads;
     options.progress = options_.progress;
+    options.stop = options_.stop;
     const SpawnList list = sample(kind_.judge, options);
     result.exact_checks += list.exact_checks;
     const bool is_settled = list.stance == Stance::Settled;
@@ -98,6 +99,15 @@ std::vector<Stand> KindPoses::raster_at(double yaw, FleetProof& proof, FleetKind
     return raster_of({yaw, {}}, proof, result);
 }
 
+Progress KindPoses::raster_progress() const
+{
+    if (!options_.stop) return options_.progress;
+    return [this](double share) {
+        if (options_.is_stopped()) throw FleetStopped{};
+        if (options_.progress) options_.progress(share);
+    };
+}
+
 std::vector<Stand> KindPoses::raster_of(const Heading& heading, FleetProof& proof, FleetKindResult& result) const
 {
     const SampleOptions& spawns = kind_.spawns;
@@ -114,7 +124,7 @@ std::vector<Stand> KindPoses::raster_of(const Heading& heading, FleetProof& proo
                                 .is_reachable = spawns.is_reachable,
                                 .layers = spawns.layers,
                                 .threads = options_.threads,
-                                .progress = options_.progress};
+                                .progress = raster_progress()};
     const RasterResult raster = spawnfield::raster(kind_.judge, options);
     result.exact_checks += raster.exact_checks;
     proof.poses += raster.poses.size();

@@ -25,6 +25,9 @@ struct Standing {
     std::uint64_t exact_checks = 0;
 };
 
+/// The work was stopped (FleetOptions::stop).
+struct FleetStopped {};
+
 /// Finds valid poses of a kind of robot, whatever other robots there are.
 class KindPoses {
 public:
@@ -32,7 +35,8 @@ public:
 
     static constexpr std::size_t random_headings = 16;  ///< of rasters, for a random yaw
 
-    /// Returns `count` drawn poses, or fewer if sample() finds fewer. With a yaw, in place of that of the options.
+    /// Returns `count` drawn poses, or fewer if sample() finds fewer or the work is stopped. With a yaw, in place of
+    /// that of the options.
     std::vector<Stand> draw(std::size_t count, std::uint64_t stream, FleetKindResult& result) const;
     /// The same for the first robot of a formation: at this yaw, or at a random one.
     std::vector<Stand> draw(std::size_t count, std::uint64_t stream, FleetKindResult& result,
@@ -42,6 +46,7 @@ public:
     std::size_t headings() const { return headings_.size(); }  ///< of the raster
 
     /// Returns the valid poses of the raster at a heading that avoid the points of the options. Counts them in `proof`.
+    /// Throws FleetStopped.
     std::vector<Stand> raster(std::size_t heading, FleetProof& proof, FleetKindResult& result) const;
     std::vector<Stand> raster_at(double yaw, FleetProof& proof, FleetKindResult& result) const;
 
@@ -55,6 +60,7 @@ private:
     };
     static std::vector<Heading> headings_of(const SampleOptions& spawns);
     std::vector<Stand> drawn(const SampleOptions& options, FleetKindResult& result) const;
+    Progress raster_progress() const;
     std::vector<Stand> raster_of(const Heading& heading, FleetProof& proof, FleetKindResult& result) const;
     std::optional<double> layer_at(const FormationSlot& slot) const;
 

@@ -18,14 +18,22 @@ struct JointedModel {
     std::vector<std::string> notices;
     double mass = 0;                  ///< of all links with <inertial>, kg
     Vec3 mass_moment = Vec3::Zero();  ///< the sum of their masses times their centres of mass, kg m
+    struct LinkMass {
+        double mass;   ///< kg
+        Vec3 centre;   ///< of mass, in the robot's frame
+        Mat3 inertia;  ///< about the centre of mass, in the robot's axes, kg m2
+    };
+    std::vector<LinkMass> masses = {};  ///< of these links
 
     /// By the name of a link: the axis about which it can turn without limits, in the frame of the model.
     std::map<std::string, Vec3> axles = {};
 
-    void add_mass(double kilograms, const Vec3& centre)
+    /// Adds a link. Its inertia is about its centre of mass, in the axes of `centre`.
+    void add_mass(double kilograms, const Pose& centre, const Mat3& link_inertia)
     {
         mass += kilograms;
-        mass_moment += kilograms * centre;
+        mass_moment += kilograms * centre.position;
+        masses.push_back({kilograms, centre.position, centre.rotation * link_inertia * centre.rotation.transpose()});
     }
 };
 

@@ -180,9 +180,14 @@ private:
     void add_mass(const urdf::Link& link, const Pose& robot_from_link)
     {
         if (!link.inertial) return;
-        const double mass = link.inertial->mass;
+        const urdf::Inertial& inertial = *link.inertial;
+        const double mass = inertial.mass;
         if (!(mass >= 0) || !std::isfinite(mass)) fail(link, "<mass> is " + number(mass) + ", needs >= 0 kg");
-        out_.add_mass(mass, (robot_from_link * pose_of(link.inertial->origin)).position);
+        Mat3 about_centre;
+        about_centre << inertial.ixx, inertial.ixy, inertial.ixz,  //
+            inertial.ixy, inertial.iyy, inertial.iyz,              //
+            inertial.ixz, inertial.iyz, inertial.izz;
+        out_.add_mass(mass, robot_from_link * pose_of(inertial.origin), about_centre);
     }
 
     Pose motion_of(const urdf::Link& link, const urdf::Joint& joint) const

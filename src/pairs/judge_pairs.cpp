@@ -1,4 +1,5 @@
 #include "base/parallel.h"
+#include "pairs/pair_ground.h"
 #include "reach/path_search.h"
 
 #include <spawnfield/error.h>
@@ -18,10 +19,7 @@ PairVerdict judge_path(JudgedPair& pair, PathSearch::Impl& search, const PairOpt
     const auto start = search.end_of(pair.start), goal = search.end_of(pair.goal);
     if (start) pair.start_island = start->island;
     if (goal) pair.goal_island = goal->island;
-    const auto ground = [](const SettledPose& pose) {
-        return Vec3(pose.position.x(), pose.position.y(), pose.ground->height);
-    };
-    pair.straight = (ground(pair.start) - ground(pair.goal)).norm();
+    pair.straight = (ground_of(pair.start) - ground_of(pair.goal)).norm();
     if (!start || !goal || start->island != goal->island) return PairVerdict::Unreachable;
     auto length = search.find(*start, *goal, options.max_path * (options.shorten ? longest_graph_path : 1));
     if (length && options.shorten) length = search.path(*start, *goal, true).length;

@@ -1,6 +1,7 @@
 #include "base/deflate.h"
 #include "base/number.h"
-#include "poses/pose_columns.h"
+#include "pairs/pair_ground.h"
+#include "pairs/pair_json.h"
 #include "poses/pose_json.h"
 
 #include <spawnfield/pair_files.h>
@@ -35,9 +36,6 @@ Json settled_json(const SettledPose& pose, double lift)
     out["margin"] = pose.margin;
     return out;
 }
-
-/// Returns the ground below a pose, m.
-Vec3 ground_of(const SettledPose& pose) { return {pose.position.x(), pose.position.y(), pose.ground->height}; }
 
 /// Returns a point in the frame of Habitat: x to the right, y up, z backwards.
 Json habitat_point(const Vec3& point) { return {point.x(), point.z(), -point.y()}; }
@@ -88,32 +86,20 @@ PairTable parse_pairs(std::string_view text, const std::string& name, bool allow
     return {parse_poses(text, name, allow_empty, "start_"), parse_poses(text, name, allow_empty, "goal_")};
 }
 
-std::string judged_pairs_csv(const PairTable& table, const std::vector<JudgedPair>& pairs)
+void add_path_limits(Json& settings, const PairOptions& options)
 {
-    const auto append = [&](std::string& text, std::size_t i) {
-        const JudgedPair& pair = pairs[i];
-        text += std::string(to_string(pair.verdict)) + ',' + to_string(pair.start.verdict) + ',' +
-                to_string(pair.goal.verdict);
-        for (const std::optional<double>& value : {pair.path_length, pair.straight, pair.detour()}) {
-            text += ',';
-            if (value) append_number(text, *value);
-        }
-        text += ',';
-        if (pair.start_island && pair.start_island == pair.goal_island) text += std::to_string(*pair.start_island);
-    };
-    return with_columns(
-        table.starts, {"pair_verdict", "start_verdict", "goal_verdict", "path_length", "straight", "detour", "island"},
-        append);
+    settings["min_path"] = options.min_path;
+    if (std::isfinite(options.max_path)) settings["max_path"] = options.max_path;
+    settings["detour"] = options.min_detour;
+    settings["fast_paths"] = !options.shorten;
 }
 
 std::string pairs_json(const PairList& list, const Judge& judge, const PairOptions& options)
 {
     Json settings = sample_settings_json(options.spawns, judge);
-    settings["min_path"] = options.min_path;
-    if (std::isfinite(options.max_path)) settings["max_path"] = options.max_path;
-    settings["detour"] = options.min_detour;
-    settings["fast_paths"] = !options.shorten;
+    add_path_limits(settings, options);
     Json out = json_head("sample", judge.map(), judge.robot(), std::move(settings), "spawnfield-pairs/1");
+    if (list.is_stopped) out["interrupted"] = true;
     const double lift = judge.options().stand.lift;
     out["pairs"] = Json::array();
     for (const StartGoal& pair : list.pairs) {

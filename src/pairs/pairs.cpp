@@ -54,25 +54,30 @@ public:
         PairList out;
         for (int round = 0; round < most_rounds && out.pairs.size() < options_.spawns.count; ++round) {
             const std::size_t missing = options_.spawns.count - out.pairs.size();
+            share_ = double(out.pairs.size()) / double(options_.spawns.count);
             const std::vector<Drawn> starts = draw(missing, std::uint64_t(2 * round));
             const std::vector<Drawn> goals = draw(std::max(missing, fewest_goals), std::uint64_t(2 * round + 1));
-            if (starts.empty() || goals.empty()) break;
+            if (starts.empty() || goals.empty() || is_stopped()) break;
             join(starts, goals, round, out);
         }
+        out.is_stopped = out.pairs.size() < options_.spawns.count && is_stopped();
         return out;
     }
 
 private:
+    bool is_stopped() const { return options_.spawns.stop && options_.spawns.stop(); }
+
     /// Returns poses from sample(), with seeds that differ between the lists.
     std::vector<Drawn> draw(std::size_t count, std::uint64_t list)
     {
         SampleOptions options = options_.spawns;
         options.count = count;
         options.seed = std::uint64_t(Draw(options_.spawns.seed, list).unit() * 0x1p53);
-        options.progress = {};
+        if (options.progress) options.progress = [&](double) { options_.spawns.progress(share_); };
         const std::vector<Spawn> spawns = sample(judge_, options).spawns;
         std::vector<Drawn> out(spawns.size());
-        parallel_for(spawns.size(), options.threads, {}, [&](std::size_t i) { out[i] = settle(spawns[i]); });
+        const auto stop = [&] { return is_stopped(); };  // then, the poses are not used
+        parallel_until(spawns.size(), options.threads, {}, stop, [&](std::size_t i) { out[i] = settle(spawns[i]); });
         return out;
     }
 
@@ -88,7 +93,7 @@ private:
         return out;
     }
 
-    /// Appends a pair for each start that has a goal.
+    /// Appends a pair for each start that has a goal, until the work is stopped.
     void join(const std::vector<Drawn>& starts, const std::vector<Drawn>& goals, int round, PairList& out)
     {
         std::vector<std::optional<StartGoal>> found(starts.size());
@@ -98,15 +103,17 @@ private:
                 options_.spawns.progress((double(out.pairs.size()) + share * double(starts.size())) /
                                          double(options_.spawns.count));
         };
-        parallel_for(starts.size(), options_.spawns.threads, progress, [&](std::size_t i) {
+        const auto stop = [&] { return is_stopped(); };
+        const auto find = [&](std::size_t i) {
             Draw random(options_.spawns.seed, std::uint64_t(2 * most_rounds + round));
             const std::size_t begin = (i + std::size_t(random.unit() * double(goals.size()))) % goals.size();
             int made = 0;
             for (std::size_t k = 0; k < goals.size() && !found[i] && made < most_searches; ++k)
                 found[i] = pair_of(starts[i], goals[(begin + k) % goals.size()], made);
             searches += std::uint64_t(made);
-        });
-        out.starts += starts.size();
+        };
+        found.resize(parallel_until(starts.size(), options_.spawns.threads, progress, stop, find));
+        out.starts += found.size();
         out.searches += searches;
         for (std::optional<StartGoal>& pair : found) {
             out.without_goal += !pair;
@@ -141,6 +148,7 @@ private:
     const Judge& judge_;
     const PairOptions& options_;
     PerThread<Search> searches_;
+    double share_ = 0;  ///< of the pairs that were found in earlier rounds
 };
 
 }  // namespace

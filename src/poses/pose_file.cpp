@@ -1,6 +1,7 @@
 #include "base/csv.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "poses/json_poses.h"
 #include "poses/pose_columns.h"
 
 #include <spawnfield/error.h>
@@ -237,6 +238,7 @@ private:
 
 PoseTable parse_poses(std::string_view text, const std::string& name, bool allow_empty, const std::string& prefix)
 {
+    if (prefix.empty() && is_json(text)) return PoseReader(name, prefix).read(csv_of_json(text, name), allow_empty);
     return PoseReader(name, prefix).read(text, allow_empty);
 }
 

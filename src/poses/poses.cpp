@@ -470,6 +470,7 @@ std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& lis
                         const SampleOptions& options)
 {
     Json out = json_head("sample", judge.map(), judge.robot(), sample_settings_json(options, judge));
+    if (list.is_stopped) out["interrupted"] = true;
     out["full"] = list.is_full;
     out["undecided_area"] = list.undecided_area;
     return with_spawns(std::move(out), list, robots);
@@ -482,7 +483,9 @@ std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& lis
     if (options.stance == Stance::Settled) add_stand_limits(settings, judge.options().stand);
     settings["max_height"] = judge.options().max_height;
     settings["max_failures"] = options.max_failures;
-    return with_spawns(json_head("search", judge.map(), judge.robot(), std::move(settings)), list, robots);
+    Json out = json_head("search", judge.map(), judge.robot(), std::move(settings));
+    if (list.is_stopped) out["interrupted"] = true;
+    return with_spawns(std::move(out), list, robots);
 }
 
 std::string poses_json(std::span<const RobotStart> robots, const Map& map, const Robot& robot)

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace spawnfield {
 
 /// Returns the indices of places (x, y), m, in an order in which most neighbours follow each other, so that they use
 /// the same tiles in the cache. Counting sort over a grid around the places.
-inline std::vector<std::uint32_t> in_neighbourhoods(const std::vector<Vec2>& places)
+inline std::vector<std::uint32_t> in_neighbourhoods(std::span<const Vec2> places)
 {
     Vec2 low = Vec2::Zero(), high = Vec2::Zero();
     if (!places.empty()) low = high = places.front();

@@ -10,6 +10,7 @@
 #include <spawnfield/error.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -33,6 +34,7 @@ constexpr std::size_t most_cells = 1 << 24;                     // kept at a tim
 constexpr std::size_t some_proofs = 1 << 19, proofs_per_point = 12;
 constexpr double next_to_nothing = 2e-5;  // share of the region's area
 constexpr double smallest_cell = 0.0001;  // m
+constexpr double unknown_area = std::numeric_limits<double>::quiet_NaN();
 
 /// The cells of a region that are not proven full. All cells have the same size, because all are split at the same
 /// time. So a random point in a random cell is uniform by area.
@@ -145,7 +147,7 @@ public:
         });
         if (is_done(out)) return !overfull_;
         if (is_settled_)
-            out.undecided_area = region_area();
+            out.undecided_area = unknown_area;
         else
             fill(out);
         return !overfull_;
@@ -234,14 +236,8 @@ private:
     {
         if (overfull_ || out.spawns.size() == options_.count) return true;
         out.is_stopped = is_stopped(options_);
-        if (out.is_stopped) out.undecided_area = region_area();
+        if (out.is_stopped) out.undecided_area = unknown_area;
         return out.is_stopped;
-    }
-
-    double region_area() const
-    {
-        const Bounds box = within(box_, shared_.map.bounds);
-        return (box.max - box.min).head<2>().prod();
     }
 
     /// Drops the cells in which, by proof, no further spawn fits.

@@ -49,7 +49,6 @@ double draw_yaw(const Options& options, Draw& draw)
 
 /// The result of one draw. It has a verdict only if it was far enough from the points that were taken before its batch.
 struct Candidate {
-    bool is_missing = false;        ///< the work was stopped before this draw
     bool on_ground = false;         ///< the draw gave a pose; only set by sample()
     bool on_double_ground = false;  ///< as counted in SpawnList; only set by sample()
     bool off_area = false;
@@ -148,17 +147,34 @@ bool is_stopped(const Options& options)
     return options.stop && options.stop();
 }
 
+// Neighbours are judged one after the other within blocks of so many draws. In larger blocks, they are nearer to each
+// other; in smaller ones, less is lost when the work is stopped. A settled draw takes about as long as 30 level ones.
+inline constexpr std::size_t level_block = 1 << 16, settled_block = 1 << 11;
+
+/// Returns the indices of places block by block, each block in neighbourhoods.
+inline std::vector<std::uint32_t> in_blocks_of_neighbours(std::span<const Vec2> places, std::size_t block)
+{
+    std::vector<std::uint32_t> out;
+    out.reserve(places.size());
+    for (std::size_t begin = 0; begin < places.size(); begin += block)
+        for (const std::uint32_t i : in_neighbourhoods(places.subspan(begin, std::min(block, places.size() - begin))))
+            out.push_back(std::uint32_t(begin) + i);
+    return out;
+}
+
 /// Makes draws first, first + 1, … in batches. Several threads call look(index, judge), which returns a Candidate, for
 /// neighbours one after the other: place(index) returns x and y of a draw, m. Then take(candidate) is called for one
 /// draw after the other, in their order, until it returns false. batch_size(draws) returns the size of the next batch
-/// after so many draws; it changes nothing but the exact checks. Ends early if the options' `stop` returns true.
-/// Returns the number of the next draw.
+/// after so many draws; it changes nothing but the exact checks. Ends early if the options' `stop` returns true: then,
+/// fewer than a block of judged draws are not taken. Returns the number of the next draw.
 template <class Options, class BatchSize, class Place, class Look, class Take>
 std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, const Options& options,
                             const SpawnList& found, TakenPoints& taken, const BatchSize& batch_size, const Place& place,
                             const Look& look, const Take& take)
 {
     constexpr std::size_t chunk = 64;
+    const std::size_t block = options.stance == Stance::Settled ? settled_block : level_block;
+    static_assert(settled_block % chunk == 0 && level_block % chunk == 0);
     std::vector<Candidate> batch;
     std::vector<Vec2> places;
     for (std::uint64_t next = first;;) {
@@ -166,25 +182,24 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
         batch.resize(batch_size(next - first));
         places.resize(batch.size());
         for (std::size_t i = 0; i < batch.size(); ++i) places[i] = place(next + i);
-        const std::vector<std::uint32_t> order = in_neighbourhoods(places);
+        const std::vector<std::uint32_t> order = in_blocks_of_neighbours(places, block);
         const Progress progress = share_found(options, found);
         const bool is_sparse = shared.is_sparse(next + batch.size());
-        parallel_for((batch.size() + chunk - 1) / chunk, options.threads, progress, [&](std::size_t c) {
+        const auto stop = [&] { return is_stopped(options); };
+        const std::size_t chunks = (batch.size() + chunk - 1) / chunk;
+        const std::size_t done = parallel_until(chunks, options.threads, progress, stop, [&](std::size_t c) {
             PoseJudge judge(shared, options.yaw);
             if (is_sparse) judge.use_coarse_cells();
             const std::size_t end = std::min(batch.size(), (c + 1) * chunk);
-            for (std::size_t k = c * chunk; k < end; ++k) {
-                Candidate& candidate = batch[order[k]];
-                const bool is_late = is_stopped(options);
-                candidate = is_late ? Candidate{} : look(next + order[k], judge);
-                candidate.is_missing = is_late;
-            }
+            for (std::size_t k = c * chunk; k < end; ++k) batch[order[k]] = look(next + order[k], judge);
         });
+        const bool is_late = done < chunks;
+        if (is_late) batch.resize(done * chunk / block * block);  // only the whole blocks
         for (const Candidate& candidate : batch) {
-            if (candidate.is_missing) return next;
             ++next;
             if (!take(candidate)) return next;
         }
+        if (is_late) return next;
     }
 }
 

@@ -177,7 +177,11 @@ private:
         // libsdformat gives a link without <inertial> a mass of 1 kg.
         if (link.link->Element()->HasElement("inertial")) {
             const ignition::math::Inertiald& inertial = link.link->Inertial();
-            out_.add_mass(inertial.MassMatrix().Mass(), (link.robot_from_link * pose_of(inertial.Pose())).position);
+            const ignition::math::Matrix3d& moments = inertial.MassMatrix().Moi();
+            Mat3 about_centre;
+            for (int row = 0; row < 3; ++row)
+                for (int col = 0; col < 3; ++col) about_centre(row, col) = moments(std::size_t(row), std::size_t(col));
+            out_.add_mass(inertial.MassMatrix().Mass(), link.robot_from_link * pose_of(inertial.Pose()), about_centre);
         }
         for (std::uint64_t k = 0; k < link.link->CollisionCount(); ++k) {
             const sdf::Collision& collision = *link.link->CollisionByIndex(k);

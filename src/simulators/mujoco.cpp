@@ -3,6 +3,7 @@
 #include "simulators/text.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/robot_inertia.h>
 
 namespace spawnfield {
 namespace {
@@ -76,11 +77,20 @@ std::string mesh_assets(const Robot& robot, std::size_t kind)
     return text;
 }
 
-std::string body(const RobotStart& start, const Robot& robot, std::size_t kind)
+std::string inertial(const RobotInertia& inertia)
+{
+    const Vec3& at = inertia.centre;
+    const Mat3& t = inertia.tensor;
+    return "      <inertial pos=\"" + numbers({at.x(), at.y(), at.z()}) + "\" mass=\"" + numbers({inertia.mass}) +
+           "\" fullinertia=\"" + numbers({t(0, 0), t(1, 1), t(2, 2), t(0, 1), t(0, 2), t(1, 2)}) + "\"/>\n";
+}
+
+std::string body(const RobotStart& start, const Robot& robot, std::size_t kind, const RobotInertia* inertia)
 {
     const std::string name = xml_escaped(start.name);
     std::string text = "    <body name=\"" + name + "\"" + place({start.position, rotation_from(start.rpy)}) +
                        ">\n      <freejoint name=\"" + name + "\"/>\n";
+    if (inertia != nullptr) text += inertial(*inertia);
     for (std::size_t part = 0; part < robot.parts.size(); ++part) {
         const Shape& shape = robot.parts[part].shape;
         const bool is_hull = shape.kind == ShapeKind::Hull;  // its corners are in the robot's frame
@@ -95,19 +105,32 @@ std::string body(const RobotStart& start, const Robot& robot, std::size_t kind)
 std::string mujoco_bodies(std::span<const RobotStart> robots, std::span<const Robot> kinds,
                           std::span<const std::size_t> kind_of)
 {
+    return mujoco_bodies(robots, kinds, kind_of, {});
+}
+
+std::string mujoco_bodies(std::span<const RobotStart> robots, std::span<const Robot> kinds,
+                          std::span<const std::size_t> kind_of, std::span<const std::optional<RobotInertia>> inertias)
+{
+    if (!inertias.empty() && inertias.size() != kinds.size())
+        throw ArgumentError("mujoco_bodies", "size of inertias", double(inertias.size()), "one for each kind, or none");
     if (kind_of.size() != robots.size())
         throw ArgumentError("mujoco_bodies", "size of kind_of", double(kind_of.size()), "one kind for each robot");
     std::string assets, bodies, keys;
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) assets += mesh_assets(kinds[kind], kind);
     for (std::size_t i = 0; i < robots.size(); ++i) {
-        bodies += body(robots[i], kinds[kind_of[i]], kind_of[i]);
+        const RobotInertia* const inertia = !inertias.empty() && inertias[kind_of[i]] ? &*inertias[kind_of[i]]
+                                                                                      : nullptr;
+        bodies += body(robots[i], kinds[kind_of[i]], kind_of[i], inertia);
         append_qpos(keys, robots[i], {});
     }
     return "<!-- " + made_by(robots.size()) +
-           ": their collision shapes; m, right-handed, x forward, y left, z up -->\n" + "<mujoco model=\"fleet\">\n" +
-           (assets.empty() ? "" : "  <asset>\n" + assets + "  </asset>\n") + "  <worldbody>\n" + bodies +
-           "  </worldbody>\n" + (robots.empty() ? "" : "  <keyframe>\n" + key("spawns", keys) + "  </keyframe>\n") +
-           "</mujoco>\n";
+           ": their collision shapes; m, right-handed, x forward, y left, z up -->\n" +
+           "<!-- Bodies with <inertial> have the mass and the inertia of the robot's file. All others have those of "
+           "their "
+           "shapes, with MuJoCo's default density. -->\n" +
+           "<mujoco model=\"fleet\">\n" + (assets.empty() ? "" : "  <asset>\n" + assets + "  </asset>\n") +
+           "  <worldbody>\n" + bodies + "  </worldbody>\n" +
+           (robots.empty() ? "" : "  <keyframe>\n" + key("spawns", keys) + "  </keyframe>\n") + "</mujoco>\n";
 }
 
 std::string mujoco_keyframes(std::span<const RobotStart> robots, const KeyframeOptions& options)

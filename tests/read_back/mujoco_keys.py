@@ -5,6 +5,7 @@ from truth import FOLDER, ROBOTS, check_pose
 
 try:
     import mujoco
+    import numpy
 except ImportError:
     print('skipped: mujoco is not installed; tools/test-python.sh installs it')
     sys.exit(77)
@@ -66,4 +67,26 @@ seen = vertices @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
 for corner in ([0, 0, 0], [0.6, 0, 0], [0, 0.4, 0], [0, 0, 0.5], [0.6, 0.4, 0.5]):
     expected = [sum(r * c for r, c in zip(row, corner)) + p for row, p in zip(cart['rotation'], cart['position'])]
     assert abs(seen - expected).max(axis=1).min() < 1e-5, (corner, expected)  # MuJoCo has float vertices
+
+# The mass and the inertia of the robot's file: those of MuJoCo's own model of it, with its joint turned.
+robot = mujoco.MjModel.from_xml_path(str(FOLDER / 'robot.urdf'))
+state = mujoco.MjData(robot)
+state.qpos[0] = 0.7
+mujoco.mj_forward(robot, state)
+own = [(robot.body_mass[k], state.xipos[k], state.ximat[k].reshape(3, 3), robot.body_inertia[k])
+       for k in range(robot.nbody)]
+mass = sum(link[0] for link in own)
+centre = sum(link[0] * link[1] for link in own) / mass
+expected = numpy.zeros((3, 3))
+for part, at, turn, moments in own:
+    away = at - centre
+    expected += turn @ (moments * turn).T + part * (away @ away * numpy.eye(3) - numpy.outer(away, away))
+model = mujoco.MjModel.from_xml_path(str(FOLDER / 'masses.xml'))
+first, second = (model.body(robot['name']) for robot in ROBOTS[:2])
+assert mass == 5 == first.mass[0] and abs(first.ipos - centre).max() < 1e-9, (mass, first.mass, first.ipos, centre)
+turn = numpy.zeros(9)
+mujoco.mju_quat2Mat(turn, first.iquat)
+turn = turn.reshape(3, 3)
+assert abs(turn @ (first.inertia * turn).T - expected).max() < 1e-9, (first.inertia, expected)
+assert second.mass[0] > 10  # a hull of 24 l, with the default density
 print('mujoco', mujoco.__version__)

@@ -3,6 +3,7 @@
 #include "worlds/random.h"
 
 #include <spawnfield/output_file.h>
+#include <spawnfield/robot_inertia.h>
 #include <spawnfield/robot_parts.h>
 #include <spawnfield/simulators.h>
 
@@ -73,6 +74,17 @@ void write_fleet(const fs::path& folder, std::vector<RobotStart> robots)
     write("fleet.launch.py", ros2_launch_py(robots, {.world = "arena's"}));
     write("fleet.launch.xml", ros2_launch_xml(robots, {.world = "arena's"}));
     write("bodies.xml", mujoco_bodies(robots, kinds, kind_of));
+    write("robot.urdf",
+          "<robot name='r'><mujoco><compiler fusestatic='false'/></mujoco><link name='a'><inertial><origin xyz='0.1 0 "
+          "0.2' rpy='0.3 -0.2 0.9'/><mass value='3'/>"
+          "<inertia ixx='0.2' iyy='0.3' izz='0.4' ixy='0.01' ixz='0.02' iyz='-0.03'/></inertial><collision><geometry>"
+          "<box size='1 0.6 0.4'/></geometry></collision></link><link name='b'><inertial><mass value='2'/>"
+          "<inertia ixx='0.05' iyy='0.06' izz='0.07' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='j' "
+          "type='revolute'><parent link='a'/><child link='b'/><origin xyz='-0.4 0.2 0.5' rpy='0 0.5 0'/><axis "
+          "xyz='0 0 1'/><limit lower='-2' upper='2' effort='1' velocity='1'/></joint></robot>");
+    const std::vector<std::optional<RobotInertia>> inertias{
+        robot_inertia((folder / "robot.urdf").string(), {.joints = {{"j", 0.7}}}), std::nullopt};
+    write("masses.xml", mujoco_bodies(robots, kinds, kind_of, inertias));
 }
 
 void write_all(const fs::path& folder)

@@ -8,6 +8,7 @@
 #include <spawnfield/error.h>
 #include <spawnfield/frames.h>
 #include <spawnfield/judge.h>
+#include <spawnfield/place_rules.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -111,6 +112,33 @@ Map with_scene(const CommonArgs& common, Scene extra, const std::string& file, c
     }
 }
 
+bool matches_some_part(const Map& map, const std::string& glob)
+{
+    try {
+        matching_parts(map.geometry, {glob}, "");
+        return true;
+    } catch (const ArgumentError&) {
+        return false;
+    }
+}
+
+/// Returns the globs of --without. Commas separate globs, unless a name matches the text as a whole.
+std::vector<std::string> globs_of(const std::vector<std::string>& texts, const Map& map)
+{
+    std::vector<std::string> out;
+    for (const std::string& text : texts) {
+        if (text.find(',') == std::string::npos || matches_some_part(map, text)) {
+            out.push_back(text);
+            continue;
+        }
+        for (std::size_t from = 0, end = 0; end != std::string::npos; from = end + 1) {
+            end = text.find(',', from);
+            out.push_back(text.substr(from, end == std::string::npos ? end : end - from));
+        }
+    }
+    return out;
+}
+
 TimeWindow parse_time(const std::string& text)
 {
     const auto [from, to] = parse_limits("--time", text, "LOW:HIGH in s, for example 2:5 or 2:", "earlier time");
@@ -130,8 +158,8 @@ void add_changes(CLI::App& command, ChangeArgs& args)
         ->check(not_empty());
     command
         .add_option("--without", args.without,
-                    "Remove the parts whose names match this glob, before parts are added, for example 'crate*' "
-                    "(repeatable; `info MAP` lists the names)")
+                    "Remove the parts whose names match this glob, before parts are added, for example 'crate*' or "
+                    "'crate*,pallet' (repeatable; `info MAP` lists the names)")
         ->allow_extra_args(false)
         ->check(not_empty());
     command
@@ -144,7 +172,7 @@ void add_changes(CLI::App& command, ChangeArgs& args)
 Map changed_map(const CommonArgs& common, const ChangeArgs& args, const std::vector<std::string>& model_paths, Map map)
 {
     try {
-        map = without_parts(map, args.without, common.threads);
+        map = without_parts(map, globs_of(args.without, map), common.threads);
     } catch (const ArgumentError& error) {
         throw ArgumentError(std::string("--without ") + error.message());
     }

@@ -125,12 +125,11 @@ std::string unrepaired_words(const CheckArgs& args, const RepairList& repairs)
 Ending run_pairs_of_check(CheckArgs args, const CLI::App& command, Summary& summary)
 {
     refuse(command, {"--poses", "--repair", "--repair-step", "--repaired"}, "has no effect with --pairs; leave it out");
-    if (args.format != "csv") throw ArgumentError("--format is " + args.format + ", but --pairs writes only csv");
     if (args.given_stance == "level")
         throw ArgumentError(
             "--pairs is only for settled robots, because paths lead between settled poses; leave --stance level out");
     args.settle = true;
-    return run_check_pairs(args, args.pairs, command, args.out, args.require_valid, summary);
+    return run_check_pairs(args, args.pairs, command, {args.out, args.format, args.require_valid}, summary);
 }
 
 Ending run_check(const CheckArgs& args, const CLI::App& command, Summary& summary)
@@ -175,8 +174,10 @@ void add_check(CLI::App& app, ChosenCommand& chosen)
         "Other columns are copied; verdict,ground,height_above,hit are replaced (- for standard input)");
     command.add_option("--out,-o", args->out, "File to write (default: standard output)");
     command
-        .add_option("--format", args->format,
-                    "csv: the input's columns and the verdict; json; or junit: a test case for each pose (default csv)")
+        .add_option(
+            "--format", args->format,
+            "csv: the input's columns and the verdict; json; or junit: a test case for each pose or pair (default "
+            "csv)")
         ->check(one_of({"csv", "json", "junit"}));
     command.add_flag("--require-valid", args->require_valid,
                      "End with status 3 if a pose is not valid, or with --repair if it is also not repaired; all rows "

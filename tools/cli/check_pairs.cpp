@@ -8,46 +8,13 @@
 
 #include <spawnfield/error.h>
 #include <spawnfield/input_file.h>
-#include <spawnfield/pair_files.h>
+#include <spawnfield/pair_report.h>
 
 #include <algorithm>
 #include <array>
 
 namespace spawnfield::cli {
 namespace {
-
-PairTable open_pairs(const CommonArgs& common, const std::string& file)
-{
-    const std::string text = is_standard(file) ? read_standard_input() : read_file(file);
-    PairTable out = parse_pairs(text, input_name(file), common.allow_empty);
-    for (const PoseTable* table : {&out.starts, &out.goals})
-        for (const std::string& what : table->notices) notice(common, what);
-    return out;
-}
-
-/// Returns why a pair is not valid, in words.
-std::string pair_reason(const JudgedPair& pair, const Judge& judge, const PairOptions& options)
-{
-    const auto island = [](const std::optional<std::size_t>& number) {
-        return number ? "on island " + std::to_string(*number) : "on no island";
-    };
-    const std::string name = std::string(to_string(pair.verdict)) + ": ";
-    switch (pair.verdict) {
-    case PairVerdict::StartNotValid: return name + judge.describe(pair.start);
-    case PairVerdict::GoalNotValid: return name + judge.describe(pair.goal);
-    case PairVerdict::Unreachable:
-        return name + "the start is " + island(pair.start_island) + ", the goal " + island(pair.goal_island);
-    case PairVerdict::TooLong: return name + "the path is longer than " + number(options.max_path) + " m (--max-path)";
-    case PairVerdict::TooShort:
-        return name + "the path is " + rounded(*pair.path_length) + " m long, the limit is " +
-               number(options.min_path) + " m (--min-path)";
-    case PairVerdict::TooDirect:
-        return name + "the path is " + rounded(*pair.detour()) + " times as long as the straight line, the limit is " +
-               number(options.min_detour) + " (--detour)";
-    case PairVerdict::Valid: break;
-    }
-    return "valid";
-}
 
 /// Returns "5 valid, 2 unreachable".
 std::string pair_count_words(const std::vector<JudgedPair>& pairs)
@@ -65,20 +32,41 @@ std::string pair_count_words(const std::vector<JudgedPair>& pairs)
     return out;
 }
 
-std::string pairs_not_valid_words(const std::vector<JudgedPair>& pairs, const Judge& judge, const PairOptions& options)
+std::string pairs_not_valid_words(const PairReport& report)
 {
     constexpr std::size_t shown = 5;
     std::size_t count = 0;
     std::string list;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-        if (pairs[i].verdict != PairVerdict::Valid && ++count <= shown)
-            list += "\n  pair " + std::to_string(i + 1) + ": " + pair_reason(pairs[i], judge, options);
+    for (std::size_t i = 0; i < report.pairs.size(); ++i)
+        if (report.pairs[i].verdict != PairVerdict::Valid && ++count <= shown)
+            list += "\n  pair " + std::to_string(i + 1) + ": " + reason(report, i);
     if (count == 0) return "";
-    return std::to_string(count) + " of " + counted(pairs.size(), "pair") + (count == 1 ? " is" : " are") +
+    return std::to_string(count) + " of " + counted(report.pairs.size(), "pair") + (count == 1 ? " is" : " are") +
            " not valid:" + list + (count > shown ? "\n  and " + std::to_string(count - shown) + " more" : "");
 }
 
+void write_report(const std::string& out, const std::string& format, const PairReport& report)
+{
+    write_output(out, [&](const auto& sink) {
+        if (format == "json")
+            write_judged_pairs_json(report, sink);
+        else if (format == "junit")
+            write_judged_pairs_junit(report, sink);
+        else
+            sink(judged_pairs_csv(report));
+    });
+}
+
 }  // namespace
+
+PairTable open_pairs(const CommonArgs& common, const std::string& file)
+{
+    const std::string text = is_standard(file) ? read_standard_input() : read_file(file);
+    PairTable out = parse_pairs(text, input_name(file), common.allow_empty);
+    for (const PoseTable* table : {&out.starts, &out.goals})
+        for (const std::string& what : table->notices) notice(common, what);
+    return out;
+}
 
 void add_check_pairs(CLI::App& command, CheckPairsArgs& args)
 {
@@ -99,7 +87,7 @@ void refuse_check_pairs_options(const CLI::App& command)
 }
 
 Ending run_check_pairs(const QueryArgs& query, const CheckPairsArgs& args, const CLI::App& command,
-                       const std::string& out, bool require_valid, Summary& summary)
+                       const PairOutput& output, Summary& summary)
 {
     PairOptions options = pair_limits(args.limits);
     options.spawns.threads = query.threads;
@@ -112,9 +100,10 @@ Ending run_check_pairs(const QueryArgs& query, const CheckPairsArgs& args, const
     const std::vector<JudgedPair> pairs = judge_pairs(*session.judge, graph, table.starts.poses, table.goals.poses,
                                                       options);
     summary.lap("query");
-    write_output(out, [&](const auto& sink) { sink(judged_pairs_csv(table, pairs)); });
+    const PairReport report{table, pairs, *session.judge, options};
+    write_report(output.file, output.format, report);
     summary.extra.push_back(counted(pairs.size(), "pair") + ": " + pair_count_words(pairs));
-    const std::string complaint = require_valid ? pairs_not_valid_words(pairs, *session.judge, options) : "";
+    const std::string complaint = output.require_valid ? pairs_not_valid_words(report) : "";
     if (complaint.empty()) return {};
     return {.status = not_valid, .complaint = "--require-valid: " + complaint};
 }

@@ -1,8 +1,16 @@
 #include "command.h"
 
 #include "messages.h"
+#include "numbers.h"
 
 namespace spawnfield::cli {
+
+Ending interrupted_ending(std::size_t found, const std::string& noun, std::optional<std::size_t> wanted)
+{
+    return {.status = interrupted,
+            .complaint = "interrupted: " + counted(found, noun) + (wanted ? " of " + std::to_string(*wanted) : "") +
+                         (found == 1 ? " was" : " were") + " found and written"};
+}
 
 int run_command(const ChosenCommand& chosen)
 {

@@ -32,6 +32,10 @@ struct Ending {
     std::string complaint = {};  ///< printed always; may be empty
 };
 
+/// Returns how a command ends that was interrupted, and has written what it had found: "5 spawns of 100". `wanted`: no
+/// value if there was no number.
+Ending interrupted_ending(std::size_t found, const std::string& noun, std::optional<std::size_t> wanted);
+
 /// The command that the user chose, with its options.
 struct ChosenCommand {
     std::string name;

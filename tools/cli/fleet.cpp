@@ -1,11 +1,13 @@
 #include "angle.h"
 #include "fleet_args.h"
+#include "interrupt.h"
 #include "messages.h"
 #include "numbers.h"
 #include "output.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>
+#include <spawnfield/robot_inertia.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -139,6 +141,25 @@ std::vector<Session> open_sessions(const FleetInputs& inputs, const std::vector<
     return out;
 }
 
+/// Finds where a kind of the fleet can drive. The words about it in the summary have the name of the kind.
+ReachGraph islands_of_kind(const Member& member, const Session& session, Summary& summary, bool keep_ways = false)
+{
+    const ReachGraph out = find_islands(member.args.query, member.args.islands, session, summary, "sample", keep_ways);
+    if (!member.plan.place.empty()) summary.extra.back().insert(0, member.plan.name + ": ");
+    return out;
+}
+
+/// Throws FileError if a robot cannot stand at the ends of a convoy's path, before all work on islands.
+void check_ends(const FleetInputs& inputs, const std::optional<FormationPlan>& plan, const Member& member,
+                const Session& session)
+{
+    if (!plan || !plan->from_to) return;
+    for_kind(inputs, member.plan, [&] {
+        check_standing(*session.judge, "from", plan->from_to->first);
+        check_standing(*session.judge, "to", plan->from_to->second);
+    });
+}
+
 /// Lets all kinds stand only on islands: those that they chose, or the linked ones of `one_island`.
 void choose_fleet_islands(const FleetFile& file, std::vector<Member>& members, const std::vector<Session>& sessions,
                           Summary& summary)
@@ -150,7 +171,7 @@ void choose_fleet_islands(const FleetFile& file, std::vector<Member>& members, c
         if (file.one_island && k == 0 && member.islands.selects_all()) member.islands.largest = true;
         const bool is_linked = file.one_island && k > 0;
         if (!is_linked && member.islands.selects_all()) continue;
-        const ReachGraph graph = find_islands(member.args.query, member.args.islands, sessions[k], summary, "sample");
+        const ReachGraph graph = islands_of_kind(member, sessions[k], summary);
         std::vector<std::size_t> chosen;
         if (!is_linked) {
             chosen = chosen_islands(graph, *sessions[k].judge, member.islands);
@@ -179,7 +200,7 @@ Formation formation_of(const FleetInputs& inputs, const FormationPlan& plan, con
     Formation out = plan.formation;
     if (!plan.from_to) return out;
     return for_kind(inputs, member.plan, [&] {
-        const ReachGraph graph = find_islands(member.args.query, member.args.islands, session, summary, "sample", true);
+        const ReachGraph graph = islands_of_kind(member, session, summary, true);
         out.path = drivable_path(*session.judge, graph, plan.from_to->first, plan.from_to->second);
         return out;
     });
@@ -222,8 +243,19 @@ public:
         }
     }
 
-    void notices(const std::vector<Session>& sessions) const
+    /// Reads what the files need of the robots, and prints notices about models and worlds.
+    void look_at(const std::vector<Member>& members, const std::vector<Session>& sessions)
     {
+        for (std::size_t k = 0; k < members.size() && inputs_.format == "mujoco" && writes_bodies_; ++k) {
+            const QueryArgs& query = members[k].args.query;
+            inertias_.push_back(robot_inertia(query.robot, robot_options(query)));
+            if (!inertias_.back())
+                notice(inputs_.query,
+                       sessions[k].robot.name +
+                           " has no mass and inertia of a rigid body in its file, so MuJoCo computes them "
+                           "from its shapes, with its default density; <inertial> in a URDF or SDF file "
+                           "gives them");
+        }
         for (std::size_t k = 0; k < outputs_.size(); ++k) outputs_[k]->notice_about_model(sessions[k].robot);
         outputs_[0]->notice_about_world(sessions[0].map);
     }
@@ -244,7 +276,8 @@ public:
             std::vector<std::size_t> kind_of;
             for (const FleetKind& kind : kinds) shapes.push_back(kind.judge.robot());
             for (const FleetRobot& robot : fleet.robots) kind_of.push_back(robot.kind);
-            return write_output(inputs_.out, [&](const auto& sink) { sink(mujoco_bodies(robots, shapes, kind_of)); });
+            return write_output(inputs_.out,
+                                [&](const auto& sink) { sink(mujoco_bodies(robots, shapes, kind_of, inertias_)); });
         }
         outputs_[0]->write(robots, kinds[0].judge.map(), [&] { return fleet_json(fleet, kinds, options, robots); });
     }
@@ -269,25 +302,33 @@ private:
     const FleetInputs& inputs_;
     const bool writes_bodies_;  ///< MuJoCo: of a fleet, unless --keys asks for keys alone
     std::vector<std::unique_ptr<SimulatorOutput>> outputs_;
+    std::vector<std::optional<RobotInertia>> inertias_;  ///< of each kind, for MuJoCo's bodies
 };
+
+/// Returns the number of robots that were asked for. No value: some as many as fit.
+std::optional<std::size_t> wanted_robots(std::span<const FleetKind> kinds)
+{
+    std::size_t out = 0;
+    for (const FleetKind& kind : kinds) {
+        if (!kind.count) return std::nullopt;
+        out += *kind.count;
+    }
+    return out;
+}
 
 void fill(Summary& summary, const Fleet& fleet, std::span<const FleetKind> kinds, const FleetOptions& options)
 {
     summary.seed = options.seed;
-    std::size_t wanted = 0;
+    const std::optional<std::size_t> wanted = wanted_robots(kinds);
     std::uint64_t draws = 0, close = 0, overlapping = 0;
-    bool is_fill = false;
-    for (std::size_t k = 0; k < kinds.size(); ++k) {
-        const FleetKindResult& result = fleet.kinds[k];
-        wanted += kinds[k].count.value_or(0);
-        is_fill = is_fill || !kinds[k].count;
+    for (const FleetKindResult& result : fleet.kinds) {
         draws += result.draws;
         close += result.too_close;
         overlapping += result.overlapping;
     }
     summary.extra.insert(summary.extra.begin(),
-                         is_fill ? counted(fleet.robots.size(), "robot")
-                                 : std::to_string(fleet.robots.size()) + " of " + counted(wanted, "robot"));
+                         wanted ? std::to_string(fleet.robots.size()) + " of " + counted(*wanted, "robot")
+                                : counted(fleet.robots.size(), "robot"));
     summary.extra.push_back(counted(draws, "drawn pose") + ", " + std::to_string(close) + " too close, " +
                             std::to_string(overlapping) + " overlapping");
     summary.draws = {{"all", draws}, {"too_close", close}, {"overlapping", overlapping}};
@@ -339,26 +380,32 @@ Ending run_fleet(const FleetInputs& inputs, const CLI::App& command, Summary& su
         needs_graph = needs_graph || !member.islands.selects_all() ||
                       (member.plan.formation && member.plan.formation->from_to);
     }
-    const FleetOutput output(inputs, command, members);
+    FleetOutput output(inputs, command, members);
     const std::vector<Session> sessions = open_sessions(inputs, members, summary);
     for (std::size_t k = 0; k < members.size(); ++k)
         for_kind(inputs, members[k].plan, [&] { members[k].complete(sessions[k], command, summary, needs_graph); });
     notice_about_avoided(inputs.query, sessions[0].map, avoid);
-    output.notices(sessions);
+    output.look_at(members, sessions);
     summary.lap("load");
+    check_ends(inputs, file.formation, members[0], sessions[0]);
+    for (std::size_t k = 0; k < members.size(); ++k)
+        check_ends(inputs, members[k].plan.formation, members[k], sessions[k]);
     choose_fleet_islands(file, members, sessions, summary);
     const std::vector<FleetKind> kinds = fleet_kinds(inputs, members, sessions, summary);
     FleetOptions options{.min_distance = file.min_distance,
                          .between = file.between,
                          .seed = inputs.draws.seed,
                          .threads = inputs.query.threads,
-                         .progress = progress_bar(inputs.query, "sample")};
+                         .progress = progress_bar(inputs.query, "sample", false),
+                         .stop = is_interrupted};
     if (file.formation) options.formation = formation_of(inputs, *file.formation, members[0], sessions[0], summary);
     const Fleet fleet = place_fleet(kinds, options);
+    summary.is_interrupted = end_interruptible_work(!fleet.robots.empty());
     summary.lap("query");
     output.write(fleet, kinds, options);
     fill(summary, fleet, kinds, options);
-    return ending_of(fleet, kinds);
+    return summary.is_interrupted ? interrupted_ending(fleet.robots.size(), "robot", wanted_robots(kinds))
+                                  : ending_of(fleet, kinds);
 }
 
 }  // namespace spawnfield::cli

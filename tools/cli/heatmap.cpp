@@ -2,6 +2,7 @@
 #include "area_args.h"
 #include "command.h"
 #include "ground_args.h"
+#include "heatmap_marks.h"
 #include "messages.h"
 #include "numbers.h"
 #include "picture_args.h"
@@ -25,10 +26,10 @@ struct HeatmapArgs : QueryArgs {
     AreaArgs area;
     GroundArgs ground;
     IslandArgs islands;
-    std::string out, format, quantity = "verdict", spawns, bounds, yaw;
+    HeatmapMarkArgs marks;
+    std::string out, format, quantity = "verdict", bounds, yaw;
     double step = 0;
     int size = 1000;
-    bool names = false;
 };
 
 /// Returns the step that gives about 300 columns along the longer side: fine enough to look at, and quick.
@@ -57,14 +58,18 @@ struct Facing {
 
 bool is_same_yaw(double a, double b) { return std::abs(std::remainder(a - b, 2 * std::numbers::pi)) <= 1e-6; }
 
-/// Returns --yaw if it is given, else the yaw of the spawns.
+/// Returns --yaw; nothing if it is not given.
+std::optional<Facing> given_facing(const HeatmapArgs& args)
+{
+    if (args.yaw.empty()) return std::nullopt;
+    const YawChoice yaw = parse_yaw_choice(args, args.yaw, args.is_settled(), true);
+    return Facing{yaw.is_random, yaw.yaw, yaw.rule};
+}
+
+/// Returns the yaw of the spawns.
 Facing facing_of(const HeatmapArgs& args, const std::vector<Spawn>& spawns)
 {
     Facing facing;
-    if (!args.yaw.empty()) {
-        const YawChoice yaw = parse_yaw_choice(args, args.yaw, args.is_settled(), true);
-        return {yaw.is_random, yaw.yaw, yaw.rule};
-    }
     if (spawns.empty()) return facing;
     facing.yaw = spawns[0].yaw;
     facing.is_any = std::any_of(spawns.begin(), spawns.end(),
@@ -79,19 +84,6 @@ Facing facing_of(const HeatmapArgs& args, const std::vector<Spawn>& spawns)
     return facing;
 }
 
-/// Reads the spawns of --spawns with their verdicts and, with --names, their names.
-void read_spawns(const HeatmapArgs& args, HeatmapOptions& picture)
-{
-    if (args.spawns.empty()) return;
-    const PoseTable table = open_poses(args, args.spawns);
-    picture.spawns = spawns_of(table);
-    picture.spawn_verdicts = verdicts_of(table, args.spawns);
-    if (!args.names) return;
-    picture.spawn_names = column_of(table, "name");
-    if (!picture.spawn_names.empty()) return;
-    for (std::size_t row = 1; row <= picture.spawns.size(); ++row) picture.spawn_names.push_back(std::to_string(row));
-}
-
 RasterOptions raster_options(const HeatmapArgs& args, const CLI::App& command)
 {
     RasterOptions options{
@@ -101,15 +93,6 @@ RasterOptions raster_options(const HeatmapArgs& args, const CLI::App& command)
     options.z = heights_of(args.ground, options.bounds, "--bounds");
     options.area = read_area(args, args.area);
     return options;
-}
-
-HeatmapOptions picture_options(const HeatmapArgs& args)
-{
-    if (args.names && args.spawns.empty())
-        throw ArgumentError("--names needs --spawns, because it writes the names of spawns");
-    HeatmapOptions picture{.quantity = quantity_of(args.quantity), .pixels = args.size, .threads = args.threads};
-    read_spawns(args, picture);
-    return picture;
 }
 
 /// Returns the raster that the picture shows. With several headings, fills the picture's options about them.
@@ -172,22 +155,25 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     const bool shows_islands = args.quantity == "island";
     const IslandChoice asked_islands = island_choice(args, args.islands, command);
     RasterOptions options = raster_options(args, command);
-    HeatmapOptions picture = picture_options(args);
+    HeatmapOptions picture{.quantity = quantity_of(args.quantity), .pixels = args.size, .threads = args.threads};
+    const std::optional<Facing> asked_facing = given_facing(args);
+    const KindRobots kind_robots = read_marks(args, args.marks, picture);
     if (is_of_rest(picture.quantity) && !args.is_settled())
         throw ArgumentError("--quantity " + args.quantity +
                             " is about the robot at rest; leave --stance level out, or choose another quantity");
-    const Facing facing = facing_of(args, picture.spawns);
+    const Session session = open_session(args, summary);
+    notice_if_off_map(args, session.map, "--bounds", options.bounds);
+    notice_about_area(args, session.map, options.area);
+    notice_if_no_layer(args, session.map, options.layers);
+    options.z = with_floor(options.z, args.ground, session.map);
+    keep_heights(args, session.map, options.z, picture);
+    const Facing facing = asked_facing ? *asked_facing : facing_of(args, picture.spawns);
     if (is_of_rest(picture.quantity) && facing.is_any)
         throw ArgumentError("--quantity " + args.quantity +
                             " needs one heading at each place; give --yaw an angle, for example 90deg, or a rule that "
                             "chooses one, for example best:16");
     options.yaw = facing.yaw;
     options.heading = facing.rule;
-    const Session session = open_session(args, summary);
-    notice_if_off_map(args, session.map, "--bounds", options.bounds);
-    notice_about_area(args, session.map, options.area);
-    notice_if_no_layer(args, session.map, options.layers);
-    options.z = with_floor(options.z, args.ground, session.map);
     notices_about_stance(args, command, session.robot);
     notice_about_heading(args, session.map, options.heading);
     options.offset = choose_offset(args, options.offset, session.robot, summary);
@@ -232,16 +218,13 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
                     "verdict, height, clearance or slope; for settled robots also tilt, roll, pitch, margin, belly or "
                     "island: ground within which the robot can drive (default verdict)")
         ->check(one_of(quantities));
-    command.add_option("--spawns", args->spawns,
-                       "CSV file of spawns to draw, as footprints of the robot or as arrows. A column verdict (from "
-                       "`check`) gives their colours (- for standard input)");
+    add_heatmap_marks(command, args->marks);
     command.add_option("--yaw", args->yaw,
                        "Yaw of all poses: " + yaw_help +
                            "; or random: at how many of 16 headings the robot fits; for " + heading_help +
                            " (default: that of the spawns, or 0)");
     start_group(command, help_group::picture);
-    command.add_flag("--names", args->names,
-                     "Write each spawn's name beside it: its column name, or the number of its row, from 1");
+    add_heatmap_names(command, args->marks);
     command.add_option("--step", args->step,
                        "Distance between columns, m (default: 300 columns along the longer side)");
     command

@@ -25,7 +25,13 @@ void catch_interrupts()
 
 bool is_interrupted() { return interrupt_seen; }
 
-void forget_interrupt() { interrupt_seen = false; }
+bool end_interruptible_work(bool has_found)
+{
+    if (!has_found) stop_if_interrupted();
+    if (!interrupt_seen.exchange(false)) return false;
+    catch_interrupts();
+    return true;
+}
 
 void stop_if_interrupted()
 {

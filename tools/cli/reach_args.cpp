@@ -145,10 +145,9 @@ ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Ses
     options.progress = progress_bar(query, command + ", islands");
     const KeptGraph kept = kept_graph(*session.judge, options);
     if (!kept.notice.empty()) notice(query, kept.notice);
-    summary.lap("islands");
     char seconds[40];
     std::snprintf(seconds, sizeof seconds, kept.is_read ? " read in %.3f s" : " found in %.2f s",
-                  summary.seconds_of("islands"));
+                  summary.lap("islands"));
     summary.extra.push_back(counted(kept.graph.islands().size(), "island") + seconds + ", reach step " +
                             rounded(*options.step) + " m");
     return kept.graph;

@@ -21,6 +21,7 @@
 
 #include <cctype>
 #include <cstdio>
+#include <limits>
 
 namespace spawnfield::cli {
 namespace {
@@ -116,6 +117,7 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const Option
     if (!options.avoid.empty()) add("Draws near avoided poses", std::to_string(list.near_avoided));
     add("Draws too close", std::to_string(list.too_close));
     add("Positions that are not valid", "counted, not written");
+    if (list.is_stopped) add("Interrupted", "yes");
     return out;
 }
 
@@ -169,12 +171,11 @@ struct SpawnQuery {
     std::function<void(const Session&, const SpawnList&)> after_draws = [](const auto&, const auto&) {};
 };
 
-/// Returns the result without any draw: the whole region is undecided.
-SpawnList nothing_drawn(const Map& map, const Bounds& bounds)
+/// Returns the result without any draw: nothing is proven about the region.
+SpawnList nothing_drawn()
 {
-    const Bounds box = bounds.is_empty() ? map.bounds : bounds;
     SpawnList out;
-    out.undecided_area = (box.max - box.min).head<2>().prod();
+    out.undecided_area = std::numeric_limits<double>::quiet_NaN();
     return out;
 }
 
@@ -218,25 +219,19 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
     const std::string hopeless = query.before_draws(session, options);
     options.progress = progress_bar(args, command, false);
     options.stop = is_interrupted;
-    const SpawnList list = hopeless.empty() ? query.run(*session.judge, options)
-                                            : nothing_drawn(session.map, options.bounds);
-    if (list.spawns.empty()) stop_if_interrupted();
-    const bool was_interrupted = is_interrupted();
-    forget_interrupt();
+    const SpawnList list = hopeless.empty() ? query.run(*session.judge, options) : nothing_drawn();
+    summary.is_interrupted = end_interruptible_work(!list.spawns.empty());
     if (command == "sample") summary.fullness = {list.is_full, list.undecided_area};
     summary.lap("query");
     notice_about_double_ground(args, list);
-    query.after_draws(session, list);
+    if (!summary.is_interrupted) query.after_draws(session, list);
     if (folder)
         write_thesis(*folder, settings_of(args, session, options, list, command, own), list.counts, summary,
                      [&](const auto& into) { return write_thesis_locations(into, list); });
     else
         write(args, *output, session, options, list);
     fill(summary, options, list);
-    if (was_interrupted)
-        return {.status = interrupted,
-                .complaint = "interrupted: " + counted(list.spawns.size(), "spawn") + " of " +
-                             std::to_string(options.count) + " were found and written"};
+    if (summary.is_interrupted) return interrupted_ending(list.spawns.size(), "spawn", options.count);
     if (list.spawns.size() == options.count) return {};
     return {.status = fewer_found, .notice = hopeless.empty() ? shortfall(options, args, list, command) : hopeless};
 }
@@ -317,12 +312,16 @@ Ending run_pairs(const SpawnArgs& args, const CLI::App& command, Summary& summar
         options.spawns.is_reachable = on_islands(graph, chosen_islands(graph, *session.judge, islands));
         options.spawns.reachable_name = words_of(islands);
     }
+    options.spawns.progress = progress_bar(args, "sample", false);
+    options.spawns.stop = is_interrupted;
     const PairList list = sample_pairs(*session.judge, graph, options);
+    summary.is_interrupted = end_interruptible_work(!list.pairs.empty());
     summary.lap("query");
     write_pairs(args.pairs, args.format, args.out, session, list, options);
     summary.seed = options.spawns.seed;
     summary.extra.push_back(std::to_string(list.pairs.size()) + " of " + std::to_string(options.spawns.count) +
                             " pairs, " + counted(list.searches, "path") + " searched");
+    if (summary.is_interrupted) return interrupted_ending(list.pairs.size(), "pair", options.spawns.count);
     if (list.pairs.size() == options.spawns.count) return {};
     return {.status = fewer_found, .notice = shortfall_of_pairs(list, options.spawns.count)};
 }

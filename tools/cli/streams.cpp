@@ -11,10 +11,10 @@ namespace spawnfield::cli {
 namespace {
 
 /// Options whose value is read from standard input if it is `-`.
-constexpr std::array inputs{"--poses", "--spawns", "--avoid", "--region", "--keep-out"};
+constexpr std::array inputs{"--poses", "--spawns", "--pairs", "--paths", "--avoid", "--region", "--keep-out"};
 
 /// Options whose value goes to standard output if it is `-`.
-constexpr std::array outputs{"--out", "--repaired", "--summary", "--heatmap", "--picture"};
+constexpr std::array outputs{"--out", "--repaired", "--path", "--summary", "--heatmap", "--picture"};
 
 /// An option that cannot be read from standard input, and its meaning.
 struct Unable {

@@ -38,11 +38,12 @@ Summary::Summary(std::string command, const CommonArgs& args)
     if (!args.summary.empty() && !is_standard(args.summary) && !is_pipe) file_.emplace(args.summary);
 }
 
-void Summary::lap(const std::string& stage)
+double Summary::lap(const std::string& stage)
 {
-    const double time = now();
-    seconds_.emplace_back(stage, time - last_);
+    const double time = now(), out = time - last_;
+    seconds_.emplace_back(stage, out);
     last_ = time;
+    return out;
 }
 
 void Summary::set_verdicts(const VerdictCounts& counts, std::uint64_t exact_checks)
@@ -67,7 +68,7 @@ double Summary::seconds_of(const std::string& stage) const
 
 std::string Summary::line(double total) const
 {
-    std::string text = "spawnfield " + command_ + ": ";
+    std::string text = "spawnfield " + command_ + ": " + (is_interrupted ? "interrupted; " : "");
     for (const std::string& words : extra) text += words + "; ";
     if (counts_) {
         text += counted(counts_->total(), "pose");
@@ -86,6 +87,7 @@ std::string Summary::json(double total) const
 {
     nlohmann::ordered_json out;
     out["command"] = command_;
+    if (is_interrupted) out["interrupted"] = true;
     out["poses"] = counts_ ? counts_->total() : 0;
     out["counts"] = nlohmann::ordered_json::object();
     if (counts_)

@@ -18,7 +18,8 @@ public:
     /// Opens the JSON file before all work, so that a wrong name leaves nothing half done. Throws OutputError.
     Summary(std::string command, const CommonArgs& args);
 
-    void lap(const std::string& stage);  ///< the seconds since the last lap belong to this stage
+    /// The seconds since the last lap, which are returned, belong to this stage.
+    double lap(const std::string& stage);
     void set_verdicts(const VerdictCounts& counts, std::uint64_t exact_checks);
     double seconds_of(const std::string& stage) const;
     double elapsed() const;  ///< seconds since the start
@@ -27,13 +28,14 @@ public:
     std::uint64_t seed = 0;
     std::string map_hash;
     std::vector<std::string> changes;                         ///< of the map
+    bool is_interrupted = false;                              ///< the result is a part of what was asked for
     ExactTime exact_time;                                     ///< for a query's options
     std::vector<std::string> extra;                           ///< further words, at the beginning of the line
     std::optional<double> offset;                             ///< m, of poses on layers
     std::vector<std::pair<std::string, double>> more_stages;  ///< of a bake: name and seconds
     struct Fullness {
         bool is_full;
-        double undecided_area;  // m2
+        double undecided_area;  // m2; NaN: nothing is proven
     };
     std::optional<Fullness> fullness;  ///< of a sample
     /// For a sample or search: the number of draws, and how many were dropped for each reason.
