@@ -378,7 +378,8 @@ Json sample_settings_json(const SampleOptions& options, const Judge& judge)
     if (const std::string rules = to_string(options.place); !rules.empty()) settings["place"] = rules;
     for (const auto& [quantity, weight] : options.measures.prefer) settings["prefer"][to_string(quantity)] = weight;
     if (options.measures.sensor_height) settings["sensor_height"] = *options.measures.sensor_height;
-    if (measures_view(options.measures)) settings["view_range"] = options.measures.view_range;
+    if (asks_for(options.measures, PlaceQuantity::View)) settings["view_range"] = options.measures.view_range;
+    if (asks_for(options.measures, PlaceQuantity::Room)) settings["room_range"] = options.measures.room_range;
     if (!options.place.facing.empty()) settings["yaw"] = "facing " + options.place.facing;
     if (!options.reachable_name.empty()) settings["islands"] = options.reachable_name;
     return settings;
