@@ -7,6 +7,7 @@
 
 #include <spawnfield/error.h>
 #include <spawnfield/map_export.h>
+#include <spawnfield/raster_quantities.h>
 #include <spawnfield/output_file.h>
 
 #include <Eigen/Geometry>
@@ -452,17 +453,17 @@ TEST_CASE("the bands of a GeoTIFF have the values of the column at the centre of
     CHECK(read.at("elevation", -3, -1) == float(2.1));  // x and y are not rotated or mirrored
     CHECK(std::isnan(read.at("elevation", 4.5, 0)));
     CHECK(read.at("layers", 4.5, 0) == 0);
-    CHECK(read.at("clearance", -3, -1) == Approx(1.9));  // under the deck
-    CHECK(std::isnan(read.at("clearance", 1, -1)));      // the open sky
-    CHECK(read.at("clearance", 1, 2) == 0);              // the crate
+    CHECK(read.at("free_height", -3, -1) == Approx(1.9));  // under the deck
+    CHECK(std::isnan(read.at("free_height", 1, -1)));      // the open sky
+    CHECK(read.at("free_height", 1, 2) == 0);              // the crate
     CHECK(read.at("slope", -3, -1) == 0);
     CHECK(read.at("verdict", 2, -2) == float(Verdict::Submerged));
     choice.layers = {LayerChoice::Kind::Top, 0};
     write_geotiff(map, frame, nullptr, choice, folder / "top.tif");
     const GeoTiff top = read_geotiff(folder / "top.tif");
     CHECK_FALSE(top.has("verdict"));
-    CHECK(std::isnan(top.at("clearance", -3, -1)));  // on the deck
-    CHECK(top.at("clearance", -3.5, 1) == 0);        // its block
+    CHECK(std::isnan(top.at("free_height", -3, -1)));  // on the deck
+    CHECK(top.at("free_height", -3.5, 1) == 0);        // its block
 }
 
 TEST_CASE("a GeoTIFF has the slope of a ramp, also at the rim")
@@ -555,6 +556,65 @@ TEST_CASE("export --format geotiff has the tilt and the margin of settled robots
     CHECK_FALSE(read_geotiff(arena / "b.tif").has("tilt"));
 }
 
+TEST_CASE("the bands of places in a GeoTIFF have the quantities of the poses at the centres of its cells")
+{
+    const TestMap map = deck_map();
+    const Judge judge(map, small_box);
+    const GridFrame frame = frame_around(map.bounds, 0.2);
+    const TempFolder folder;
+    const PlaceMeasures measures{
+        .columns = {PlaceQuantity::View, PlaceQuantity::Clearance, PlaceQuantity::HeadRoom, PlaceQuantity::Roughness},
+        .view_range = 2};
+    for (const Stance stance : {Stance::Level, Stance::Settled}) {
+        RasterOptions options{.stance = stance, .yaw = 0.3, .layers = {LayerChoice::Kind::Bottom, 0}};
+        const VerdictImage image = verdict_image(judge, frame, options, measures);
+        write_geotiff(map, frame, &image, {.layers = options.layers}, folder / "deck.tif");
+        const GeoTiff read = read_geotiff(folder / "deck.tif");
+        options.step = frame.cell;
+        options.bounds = {Vec3(frame.x_of(0), frame.y_of(frame.rows - 1), 0),
+                          Vec3(frame.x_of(frame.cols - 1), frame.y_of(0), 0)};
+        const RasterResult plain = raster(judge, options);
+        REQUIRE(plain.grid.rows == frame.rows);
+        std::size_t known = 0;
+        for (const PlaceQuantity quantity : measures.columns) {
+            const std::vector<double> values = raster_quantity(judge, plain, quantity, measures);
+            const HeightImage& band = read.band(to_string(quantity));
+            for (std::size_t p = 0; p < values.size(); ++p) {
+                const int col = int(std::lround((plain.poses[p].x - frame.x_of(0)) / frame.cell)),
+                          row = int(std::lround((frame.y_of(0) - plain.poses[p].y) / frame.cell));
+                CHECK(std::isnan(values[p]) == std::isnan(band(row, col)));
+                if (std::isnan(values[p])) continue;
+                CHECK(band(row, col) == Approx(values[p]).margin(1e-5));
+                ++known;
+            }
+        }
+        CHECK(known > 400);
+    }
+}
+
+TEST_CASE("export --bands adds quantities of places to a GeoTIFF, and refuses others")
+{
+    const Arena arena;
+    REQUIRE(arena("export map --format geotiff --bands clearance,view -o a.tif" + husky_option).status == 0);
+    const GeoTiff read = read_geotiff(arena / "a.tif");
+    CHECK(read.at("clearance", 0, 3) > 0);
+    CHECK(std::isnan(read.at("clearance", -6.5, -5)));  // a wall
+    CHECK(read.at("view", 0, 3) <= 1);
+    const auto message = [&](const std::string& arguments) {
+        const ProgramRun run = arena("export map --format geotiff -o b.tif" + arguments);
+        CHECK(run.status == 2);
+        return run.err;
+    };
+    CHECK(message(" --bands tilt" + husky_option) ==
+          "spawnfield: --bands has \"tilt\", but the file of a settled robot has this band anyway; leave it out\n");
+    CHECK_THAT(message(" --bands width" + husky_option), Contains("--bands has \"width\", needs one of clearance"));
+    CHECK_THAT(message(" --bands room --stance level" + husky_option), Contains("--bands room is only for settled"));
+    CHECK_THAT(message(" --bands view"), Contains("--bands needs --robot"));
+    CHECK_THAT(message(" --bands clearance --view-range 3" + husky_option),
+               Contains("--view-range is only for --bands view"));
+    CHECK(arena.names() == std::set<std::string>{"map", "a.tif"});
+}
+
 TEST_CASE("GDAL reads the bands, transform, units and no-data of a GeoTIFF", "[python]")
 {
     const auto python = python_with("rasterio");
@@ -565,7 +625,7 @@ TEST_CASE("GDAL reads the bands, transform, units and no-data of a GeoTIFF", "[p
 import math, sys
 import rasterio
 with rasterio.open(sys.argv[1]) as d:
-    assert d.descriptions == ('elevation', 'elevation_1', 'layers', 'clearance', 'slope', 'water', 'obstacle', 'verdict'), d.descriptions
+    assert d.descriptions == ('elevation', 'elevation_1', 'layers', 'free_height', 'slope', 'water', 'obstacle', 'verdict'), d.descriptions
     assert d.units[0] == 'm' and d.units[4] == 'degrees', d.units
     assert math.isnan(d.nodata)
     assert all(t == 'float32' for t in d.dtypes)

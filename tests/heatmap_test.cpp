@@ -333,20 +333,22 @@ TEST_CASE("an arrow is at the place of its spawn and points along its yaw")
     CHECK(behind > 0);
 }
 
-TEST_CASE("clearance grows from the border and from columns that are not valid")
+TEST_CASE("a measured quantity has the colours of its values where the pose is valid")
 {
-    const Picture picture = draw(
-        raster_of({"VVVVVVV", "VVVVVVV", "VVVVVVV", "VVVCVVV", "VVVVVVV", "VVVVVVV", "VVVVVVV"}),
-        {.quantity = HeatmapQuantity::Clearance});
-    const Ramp ramp = viridis();
-    const auto colour = [&](double clearance) {
-        return ramp[std::size_t(std::lround(clearance / 4 * 255))];
-    };  // the scale is 0 .. 4 m
-    CHECK(picture.at(1, 1) == colour(2));
-    CHECK(picture.at(3, 3) == colour(4));
-    CHECK(picture.at(5, 7) == colour(2));
-    CHECK(picture.at(5, 5) == colour(std::sqrt(8)));
-    CHECK(picture.at(7, 7) == rgb(0x9a9a9a));
+    const RasterResult raster = raster_of({"VCV", "VVV"});  // row 0 of the drawing has the largest y
+    HeatmapOptions options{.quantity = HeatmapQuantity::Clearance};
+    for (const RasterPose& pose : raster.poses) options.values.push_back(pose.x);
+    const double largest = *std::max_element(options.values.begin(), options.values.end());
+    const Picture picture = draw(raster, options);
+    for (std::size_t p = 0; p < raster.poses.size(); ++p) {
+        const RasterPose& pose = raster.poses[p];
+        const bool is_valid = pose.verdict == Verdict::Valid;
+        CHECK(picture.at(pose.x, pose.y) ==
+              (is_valid ? viridis()[std::size_t(std::lround(pose.x / largest * 255))] : rgb(0x9a9a9a)));
+    }
+    options.values.pop_back();
+    CHECK_THROWS_WITH(draw(raster, options),
+                      Contains("size of values is 5, needs as many as the raster's poses for this quantity"));
 }
 
 TEST_CASE("height shows the pose that represents the column")
@@ -559,7 +561,7 @@ TEST_CASE("quantities count a pose as valid if it is valid at all headings")
 {
     const RasterResult raster = raster_of({"VVV", "VVV", "VVV"});
     const HeatmapOptions options{
-        .quantity = HeatmapQuantity::Clearance, .headings = 4, .valid_headings = {4, 4, 4, 4, 3, 4, 4, 4, 4}};
+        .quantity = HeatmapQuantity::Height, .headings = 4, .valid_headings = {4, 4, 4, 4, 3, 4, 4, 4, 4}};
     const Picture picture = draw(raster, options);
     CHECK(picture.at(3, 3) == rgb(0x9a9a9a));
     CHECK(picture.at(1, 3) != rgb(0x9a9a9a));

@@ -5,10 +5,14 @@
 #include "slow_reach.h"
 #include "test_map.h"
 
+#include <spawnfield/raster_quantities.h>
+#include <spawnfield/room.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 using namespace spawnfield;
 using rest_robots::add_block;
@@ -106,6 +110,15 @@ std::map<slow::Reach::State, SlowCost> slow_paths(const slow::Reach& reach, cons
     return out;
 }
 
+/// Returns the area of the places to which these paths lead, if they are not longer than `range`, m.
+double slow_room(const std::map<slow::Reach::State, SlowCost>& paths, double range, double step)
+{
+    std::set<std::array<int, 3>> places;
+    for (const auto& [state, cost] : paths)
+        if (double(cost.first) * 1e-9 <= range) places.insert({state[0], state[1], state[2]});
+    return double(places.size()) * step * step;
+}
+
 /// Returns the number of turns on the spot.
 int turns_of(const std::vector<std::uint64_t>& states)
 {
@@ -169,6 +182,13 @@ TEST_CASE("Shortest paths are those of a slow search on the slow graph")
         PathSearch::Impl search(std::make_shared<const PathGraph>(world.graph.impl()));
         for (const std::size_t start : {std::size_t(0), states.size() / 2}) {
             const auto expected = slow_paths(reach, graph, states[start]);
+            for (const double range : {0.6123, 1.4987}) {
+                CAPTURE(seed, start, range);
+                const auto [col, row, place, heading] = states[start];
+                const SettledPose& pose = *reach.places(col, row)[std::size_t(place)].poses[std::size_t(heading)];
+                CHECK(room_on(world.graph, range)(pose.lifted(world.judge.options().stand.lift)) ==
+                      Approx(slow_room(expected, range, graph.grid.step)));
+            }
             for (std::size_t goal = 0; goal < states.size(); ++goal) {
                 const auto found = search.find(ids[start], ids[goal], 1e3);
                 const auto known = expected.find(states[goal]);
@@ -220,6 +240,47 @@ TEST_CASE("A path of the graph has the same length in both directions, and a sho
     }
     CHECK(paths > 10);
     CHECK(shorter > 10);
+}
+
+TEST_CASE("The room of spawns and of rasters is that of their poses, with any number of threads, and grows with range")
+{
+    const PathWorld world(random_walls(4), boxy({0.5, 0.3, 0.25}), {.step = 0.2});
+    const RasterResult plain = raster(world.judge, {.step = 0.3, .stance = Stance::Settled, .yaw = 0.3});
+    std::vector<double> last(plain.poses.size(), 0);
+    std::size_t known = 0;
+    for (const double range : {0.3, 1.0, 3.0, 20.0}) {
+        const PlaceMeasures measures{.room_range = range, .room = room_on(world.graph, range)};
+        const auto rooms = [&](int threads) {
+            const PlaceMeasures fresh{.room_range = range, .room = room_on(world.graph, range)};
+            return raster_quantity(world.judge, plain, PlaceQuantity::Room, fresh, {.threads = threads});
+        };
+        const std::vector<double> one = rooms(1), three = rooms(3);
+        for (std::size_t p = 0; p < one.size(); ++p) {
+            CHECK(std::isnan(one[p]) == (plain.poses[p].verdict != Verdict::Valid));
+            if (std::isnan(one[p])) continue;
+            ++known;
+            CHECK(one[p] == three[p]);
+            CHECK(one[p] >= last[p]);
+            last[p] = one[p];
+            const auto island = world.graph.island_of(world.at(plain.poses[p].x, plain.poses[p].y, 0.3));
+            CHECK((one[p] > 0) == island.has_value());
+            if (island) CHECK(one[p] <= world.graph.islands()[*island].area + 1e-9);
+            if (island && range == 20) CHECK(one[p] == Approx(world.graph.islands()[*island].area));
+        }
+        SampleOptions options{.count = 20, .random_yaw = true, .measures = measures};
+        options.measures.columns = {PlaceQuantity::Room};
+        options.measures.prefer = {{PlaceQuantity::Room, 1}};
+        const SpawnList list = sample(world.judge, options);
+        for (std::size_t i = 0; i < list.spawns.size(); ++i) {
+            const Spawn& spawn = list.spawns[i];
+            const Pose pose{spawn.position, rotation_of_rpy(spawn.roll, spawn.pitch, spawn.yaw)};
+            CHECK(list.columns[0].values[i] == measures.room(pose));
+            CHECK(list.columns[0].values[i] > 0);  // a place with the density 0 is never drawn
+        }
+    }
+    CHECK(known > 50);
+    CHECK_THROWS_WITH(room_on(world.graph, 101), "room_on: range is 101, needs > 0 and at most 100 m");
+    CHECK_THROWS_WITH(room_on(ReachGraph(world.judge, {.step = 0.4}), 3), Catch::Matchers::Contains("ways"));
 }
 
 TEST_CASE("On a path, the robot collides nowhere between its poses")

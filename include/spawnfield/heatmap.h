@@ -9,8 +9,13 @@ namespace spawnfield {
 enum class HeatmapQuantity {
     Verdict,
     Height,
-    Clearance,
     Slope,
+    // These are measured of each pose (HeatmapOptions::values), as in PlaceQuantity:
+    Clearance,
+    HeadRoom,
+    Roughness,
+    View,
+    Room,  ///< only for settled poses
     // These are about the robot at rest, for rasters of settled poses at one yaw (RasterResult::rests):
     Tilt,
     Roll,
@@ -28,6 +33,12 @@ struct HeatmapKind {
     std::string name;              ///< in the legend
     const Robot* robot = nullptr;  ///< its outline; nullptr: arrows
 };
+
+/// Returns whether a picture of this quantity needs HeatmapOptions::values.
+inline bool is_measured(HeatmapQuantity quantity)
+{
+    return quantity >= HeatmapQuantity::Clearance && quantity <= HeatmapQuantity::Room;
+}
 
 struct HeatmapOptions {
     HeatmapQuantity quantity = HeatmapQuantity::Verdict;
@@ -51,6 +62,8 @@ struct HeatmapOptions {
     /// For each pose of the raster, the number of headings at which it is valid. Empty: its verdict holds at all
     /// headings.
     std::vector<std::uint8_t> valid_headings = {};
+    /// For measured quantities: the value of each pose of the raster, as raster_quantity() returns it.
+    std::vector<double> values = {};
     /// For HeatmapQuantity::Island: the number of the island of each pose of the raster, as islands_of() returns it
     /// (negative: none), and the area of each island, m2.
     std::vector<std::int32_t> islands = {};
@@ -69,12 +82,12 @@ struct HeatmapOptions {
 /// with the verdict that is shown; its percentages are of the columns with a pose. With several headings, a column is
 /// shown as valid at all headings, as valid at some, or with its most frequent verdict.
 ///
-/// Height: z of the pose that is shown. Clearance: horizontal distance, m, from a valid column to the nearest place
-/// that is not valid or lies beyond the raster. Slope: slope of the layer that is shown, degrees, from the heights of
-/// neighbouring terrain cells. Tilt, roll and pitch: degrees; margin and belly clearance: m; as in SettledPose.
-/// Quantities are shown where the pose is valid at all headings. Islands: the six largest of those in the picture have
-/// a colour each, and the others share one; the number of an island is written where it has most room, if there
-/// is room. Pictures narrower than 12:1 get a white margin.
+/// Height: z of the pose that is shown. Slope: slope of the layer that is shown, degrees, from the heights of
+/// neighbouring terrain cells. Clearance, head room, roughness, view and room: HeatmapOptions::values. Tilt, roll and
+/// pitch: degrees; margin and belly clearance: m; as in SettledPose. Quantities are shown where the pose is valid at
+/// all headings. Islands: the six largest of those in the picture have a colour each, and the others share one; the
+/// number of an island is written where it has most room, if there is room. Pictures narrower than 12:1 get a white
+/// margin.
 ///
 /// Spawns are drawn as footprints, each with the outline of its own kind, if these are at least 6 pixels long.
 /// Otherwise they are arrows, or dots if arrows would be too close together. Names that would cover each other are left

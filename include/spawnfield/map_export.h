@@ -22,6 +22,13 @@ struct VerdictImage {
     /// settled pose. Empty for level robots.
     std::vector<float> tilt = {}, margin = {};
 
+    /// A quantity of each valid pose, in the order of the verdicts; NaN for other cells.
+    struct Measured {
+        PlaceQuantity quantity = PlaceQuantity::Clearance;
+        std::vector<float> values;
+    };
+    std::vector<Measured> measured = {};
+
     std::uint8_t at(int row, int col) const
     {
         return verdicts[std::size_t(row) * std::size_t(frame.cols) + std::size_t(col)];
@@ -30,9 +37,11 @@ struct VerdictImage {
 
 /// Returns the verdict at the centre of each cell, as a 2D raster gives it; no_pose where the column lacks the chosen
 /// layer. The options' step and bounds are not used. Judges a few rows at a time, so that memory is little more than a
-/// byte for each cell; nine bytes for settled robots. Throws as raster() does, and ArgumentError for LayerChoice All,
-/// because a cell has one verdict.
-SPAWNFIELD_API VerdictImage verdict_image(const Judge& judge, const GridFrame& frame, const RasterOptions& options);
+/// byte for each cell; nine bytes for settled robots, and four more for each of the measures' columns, which become
+/// VerdictImage::measured. Throws as raster() and raster_quantity() do, and ArgumentError for LayerChoice All, because
+/// a cell has one verdict.
+SPAWNFIELD_API VerdictImage verdict_image(const Judge& judge, const GridFrame& frame, const RasterOptions& options,
+                                          const PlaceMeasures& measures = {});
 
 /// Returns the name of the image that belongs to the yaml file of a nav2 map: the same name with the ending .pgm.
 /// Throws ArgumentError unless `yaml` ends in .yaml or .yml.
@@ -50,7 +59,7 @@ SPAWNFIELD_API void write_nav2_map(const VerdictImage& image, const std::filesys
                                    const std::vector<std::string>& comment = {});
 
 struct GeoTiffOptions {
-    LayerChoice layers = {LayerChoice::Kind::Top, 0};  ///< the one layer whose clearance and slope are written
+    LayerChoice layers = {LayerChoice::Kind::Top, 0};  ///< the one layer whose free height and slope are written
     ZRange z = {};       ///< layers beyond these heights, m, or beyond the map's z limits are left out
     bool survey = true;  ///< use survey coordinates if the map's origin has an EPSG code
     int threads = 0;
@@ -63,13 +72,15 @@ struct GeoTiffOptions {
 /// - elevation, elevation_1, …: heights of the layers from the top down, m; as many bands as the column with most
 ///   layers has layers
 /// - layers: number of layers in the column; 0 where there is no terrain
-/// - clearance: free height above the chosen layer, m; 0 where something stands on the layer; no-data where nothing is
+/// - free_height: free height above the chosen layer, m; 0 where something stands on the layer; no-data where nothing
+/// is
 ///   above it
 /// - slope: slope of the chosen layer, degrees, from the heights of neighbouring cells; so the edge of a layer is steep
 /// - water: highest water surface, m
 /// - obstacle: highest obstacle that stands above elevation, or where there is no terrain, m
 /// - verdict: number of the Verdict; only if `verdicts` (of the same frame) is given
 /// - tilt, margin: of the settled robot, degrees and m; only if `verdicts` has them
+/// - those of VerdictImage::measured, with the names and units of the quantities
 ///
 /// The coordinates are the map's own metres or the survey's. A pixel is an area; the first pixel is the upper left one.
 /// Tiles are deflated with predictor 3. A file that might exceed 4 GB becomes a BigTIFF. Works on one row of tiles

@@ -4,6 +4,7 @@
 #include <spawnfield/types.h>
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,13 +23,17 @@ enum class PlaceQuantity : std::uint8_t {
     Roughness,
     /// 0 .. 1: share of 64 horizontal directions in which nothing touches a line from the sensor to
     /// PlaceMeasures::view_range. The first direction is x, and water does not count.
-    View
+    View,
+    Room  ///< m2; only of settled robots: PlaceMeasures::room
 };
 
 /// All quantities, in the order of the enumeration.
-inline constexpr std::array all_place_quantities{PlaceQuantity::Clearance, PlaceQuantity::HeadRoom,
-                                                 PlaceQuantity::Tilt,      PlaceQuantity::Margin,
-                                                 PlaceQuantity::Roughness, PlaceQuantity::View};
+inline constexpr std::array all_place_quantities{
+    PlaceQuantity::Clearance, PlaceQuantity::HeadRoom, PlaceQuantity::Tilt, PlaceQuantity::Margin,
+    PlaceQuantity::Roughness, PlaceQuantity::View,     PlaceQuantity::Room};
+
+/// Returns the room to manoeuvre around a valid settled pose as it is written, m2, for example that of room_on().
+using RoomMeter = std::function<double(const Pose&)>;
 
 SPAWNFIELD_API const char* to_string(PlaceQuantity quantity);  ///< as in files: "head_room", …
 
@@ -44,7 +49,7 @@ struct PlaceMeasures {
 
     /// A factor of the density of spawns: the quantity to the power of `weight`, > 0.
     struct Preference {
-        PlaceQuantity quantity = PlaceQuantity::Clearance;  ///< Clearance, HeadRoom, Margin or View
+        PlaceQuantity quantity = PlaceQuantity::Clearance;  ///< Clearance, HeadRoom, Margin, View or Room
         double weight = 1;
     };
     /// The density of spawns by area is proportional to the product of these factors; empty: it is uniform.
@@ -53,9 +58,13 @@ struct PlaceMeasures {
     /// Height of the sensor above the robot's origin, along the robot's z axis, m; no value: as high as the robot's
     /// highest point. For View and for the rules of sight.
     std::optional<double> sensor_height = {};
+    static constexpr double most_room_range = 100;  ///< m
+    /// m, > 0 .. most_room_range; for Room: that of `room`, for files and for the largest room that is possible.
+    double room_range = 3;
+    RoomMeter room = {};  ///< must be given for Room
 };
 
-/// Returns whether a column or a preference is View.
-SPAWNFIELD_API bool measures_view(const PlaceMeasures& measures);
+/// Returns whether a column or a preference is this quantity.
+SPAWNFIELD_API bool asks_for(const PlaceMeasures& measures, PlaceQuantity quantity);
 
 }  // namespace spawnfield

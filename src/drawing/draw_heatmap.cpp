@@ -99,6 +99,9 @@ void check(const RasterResult& raster, const HeatmapOptions& options)
     if (is_of_rest(options.quantity) && raster.rests.size() != raster.poses.size())
         throw ArgumentError("write_heatmap", "size of raster.rests", double(raster.rests.size()),
                             "as many as its poses for this quantity: a raster of settled poses at one yaw");
+    if (is_measured(options.quantity) && options.values.size() != raster.poses.size())
+        throw ArgumentError("write_heatmap", "size of values", double(options.values.size()),
+                            "as many as the raster's poses for this quantity");
     if (options.quantity == HeatmapQuantity::Island) check_islands(raster, options);
 }
 
@@ -141,6 +144,10 @@ const char* scale_title(HeatmapQuantity quantity)
     switch (quantity) {
     case HeatmapQuantity::Height: return "height of the pose, m";
     case HeatmapQuantity::Clearance: return "clearance, m";
+    case HeatmapQuantity::HeadRoom: return "head room, m";
+    case HeatmapQuantity::Roughness: return "roughness, m";
+    case HeatmapQuantity::View: return "view, share of directions";
+    case HeatmapQuantity::Room: return "room to manoeuvre, m2";
     case HeatmapQuantity::Tilt: return "tilt, degrees";
     case HeatmapQuantity::Roll: return "roll (right side down), degrees";
     case HeatmapQuantity::Pitch: return "pitch (nose down), degrees";

@@ -2,8 +2,6 @@
 
 #include "drawing/relief.h"
 
-#include <opencv2/imgproc.hpp>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -22,19 +20,13 @@ cv::Mat_<float> pose_heights(const ShownPoses& shown, int headings)
     return values;
 }
 
-cv::Mat_<float> clearances(const ShownPoses& shown, double step, int headings)
+cv::Mat_<float> measured(const ShownPoses& shown, const RasterResult& raster, const HeatmapOptions& options)
 {
-    cv::Mat_<std::uint8_t> valid(shown.rows + 2, shown.cols + 2, std::uint8_t{0});  // with a border that is not valid
-    for (int row = 0; row < shown.rows; ++row)
-        for (int col = 0; col < shown.cols; ++col)
-            if (shown.is_valid(row, col, headings)) valid(row + 1, col + 1) = 1;
-    cv::Mat_<float> columns;
-    cv::distanceTransform(valid, columns, cv::DIST_L2, cv::DIST_MASK_PRECISE);
     cv::Mat_<float> values(shown.rows, shown.cols, no_value);
     for (int row = 0; row < shown.rows; ++row)
         for (int col = 0; col < shown.cols; ++col)
-            if (shown.is_valid(row, col, headings))
-                values(row, col) = static_cast<float>(columns(row + 1, col + 1) * step);
+            if (shown.is_valid(row, col, options.headings))
+                values(row, col) = float(options.values[std::size_t(shown.at(row, col) - raster.poses.data())]);
     return values;
 }
 
@@ -122,11 +114,10 @@ cv::Mat_<float> rests(const ShownPoses& shown, const RasterResult& raster, Heatm
 cv::Mat_<float> quantity_values(const ShownPoses& shown, const RasterResult& raster, const TerrainMap& terrain,
                                 const HeatmapOptions& options)
 {
+    if (is_measured(options.quantity)) return measured(shown, raster, options);
     switch (options.quantity) {
     case HeatmapQuantity::Height: return pose_heights(shown, options.headings);
     case HeatmapQuantity::Slope: return slopes(shown, raster, terrain, options.headings);
-    case HeatmapQuantity::Clearance:
-    case HeatmapQuantity::Verdict: return clearances(shown, raster.grid.step, options.headings);
     default: return rests(shown, raster, options.quantity, options.headings);
     }
 }

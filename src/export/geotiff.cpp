@@ -31,15 +31,24 @@ struct Band {
 
 bool is_settled(const VerdictImage& verdicts) { return !verdicts.tilt.empty(); }
 
+/// Tilt and margin have bands of their own.
+std::string unit_of(PlaceQuantity quantity)
+{
+    if (quantity == PlaceQuantity::Room) return "m2";
+    return quantity == PlaceQuantity::View ? "" : "m";
+}
+
 std::vector<Band> bands_of(int layers, const VerdictImage* verdicts)
 {
     std::vector<Band> bands{{"elevation", "m"}};
     for (int layer = 1; layer < layers; ++layer) bands.push_back({"elevation_" + std::to_string(layer), "m"});
     bands.insert(bands.end(),
-                 {{"layers", ""}, {"clearance", "m"}, {"slope", "degrees"}, {"water", "m"}, {"obstacle", "m"}});
+                 {{"layers", ""}, {"free_height", "m"}, {"slope", "degrees"}, {"water", "m"}, {"obstacle", "m"}});
     if (verdicts == nullptr) return bands;
     bands.push_back({"verdict", ""});
     if (is_settled(*verdicts)) bands.insert(bands.end(), {{"tilt", "degrees"}, {"margin", "m"}});
+    for (const VerdictImage::Measured& measured : verdicts->measured)
+        bands.push_back({to_string(measured.quantity), unit_of(measured.quantity)});
     return bands;
 }
 
@@ -89,7 +98,7 @@ int most_layers(const Map& map, const GridFrame& frame, const GeoTiffOptions& op
 }
 
 /// Returns the free height above a layer, up to the next span; NaN if there is none.
-float clearance(const ColumnView& column, double height)
+float free_height(const ColumnView& column, double height)
 {
     double lowest = std::numeric_limits<double>::infinity();
     for (const Span& span : column.spans)
@@ -111,7 +120,9 @@ public:
     {
         constexpr int border = 1;
         HeightImage chosen(side + 2 * border, side + 2 * border, no_data);
-        const std::size_t of_robot = verdicts_ == nullptr ? 0 : is_settled(*verdicts_) ? 3 : 1;
+        const std::size_t of_robot = verdicts_ == nullptr
+                                         ? 0
+                                         : (is_settled(*verdicts_) ? 3 : 1) + verdicts_->measured.size();
         std::vector<std::vector<float>> bands(layer_bands_ + 5 + of_robot, std::vector<float>(tile_cells, no_data));
         tiles_.visit_cells(map_.geometry, tile, border, [&](int row, int col, const ColumnView& column) {
             const bool inside = row >= 0 && row < side && col >= 0 && col < side;
@@ -140,7 +151,7 @@ private:
     {
         for (std::size_t l = 0; l < heights.size(); ++l) bands[l][cell] = float(heights[l]);
         bands[layer_bands_][cell] = float(heights.size());
-        if (layer >= 0) bands[layer_bands_ + 1][cell] = clearance(column, heights[std::size_t(layer)]);
+        if (layer >= 0) bands[layer_bands_ + 1][cell] = free_height(column, heights[std::size_t(layer)]);
         const std::span<const double> water = heights_within(column.water, z_);
         if (!water.empty()) bands[layer_bands_ + 3][cell] = float(water.front());
         if (const auto top = obstacle_above(column, heights, z_)) bands[layer_bands_ + 4][cell] = float(*top);
@@ -155,7 +166,7 @@ private:
             }
     }
 
-    /// Fills the band of verdicts and, for settled robots, those of tilt and margin.
+    /// Fills the band of verdicts, for settled robots those of tilt and margin, and those of measured quantities.
     void add_verdicts(std::span<std::vector<float>> bands, std::size_t tile) const
     {
         constexpr double degree = std::numbers::pi / 180;
@@ -168,9 +179,13 @@ private:
                                   source = std::size_t(top + row) * std::size_t(tiles_.frame.cols) +
                                            std::size_t(left + col);
                 bands[0][cell] = float(verdict);
-                if (bands.size() == 1) continue;
-                bands[1][cell] = float(verdicts_->tilt[source] / degree);
-                bands[2][cell] = verdicts_->margin[source];
+                std::size_t band = 1;
+                if (is_settled(*verdicts_)) {
+                    bands[band++][cell] = float(verdicts_->tilt[source] / degree);
+                    bands[band++][cell] = verdicts_->margin[source];
+                }
+                for (const VerdictImage::Measured& measured : verdicts_->measured)
+                    bands[band++][cell] = measured.values[source];
             }
     }
 
@@ -317,7 +332,7 @@ void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* v
 {
     if (options.layers.kind == LayerChoice::Kind::All)
         throw ArgumentError("write_geotiff",
-                            "layers is all, needs top, bottom or a number, because a cell has one clearance");
+                            "layers is all, needs top, bottom or a number, because a cell has one free height");
     if (verdicts != nullptr && (verdicts->frame.rows != frame.rows || verdicts->frame.cols != frame.cols))
         throw ArgumentError("write_geotiff",
                             "verdicts have another frame than the file, need the same rows and columns");

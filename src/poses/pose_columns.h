@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <initializer_list>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,15 @@ inline const std::vector<std::string> repair_columns{"repair",       "repair_dis
 /// index) appends the new fields of a row, with commas between them.
 std::string with_columns(const PoseTable& table, const std::vector<std::string>& names,
                          const std::function<void(std::string&, std::size_t)>& append);
+
+/// Appends numbers with commas between them.
+void append_numbers(std::string& text, std::initializer_list<double> values);
+
+/// Appends a comma, and the number unless it is NaN.
+void append_if_known(std::string& text, double value);
+
+/// Returns the name of the column for the free length that a rule measures; empty if it measures none.
+std::string free_length_column(const std::optional<HeadingRule>& rule);
 
 /// Returns whether `check` writes a column with this name: one of the pose as given, or, if `settled`, also one of a
 /// robot that was let down, or, with `repairs`, one of a repair.

@@ -32,76 +32,6 @@ void append_fields(std::string& text, const std::string& line, const std::vector
         if (left_out[i] == 0) text.append(fields[i]) += ',';
 }
 
-void append_numbers(std::string& text, std::initializer_list<double> values)
-{
-    bool first = true;
-    for (const double value : values) {
-        if (!first) text += ',';
-        first = false;
-        append_number(text, value);
-    }
-}
-
-/// Appends a comma, and the number unless it is NaN.
-void append_if_known(std::string& text, double value)
-{
-    text += ',';
-    if (!std::isnan(value)) append_number(text, value);
-}
-
-/// Returns the name of the column for the free length that a rule measures; empty if it measures none.
-std::string free_length_column(const std::optional<HeadingRule>& rule)
-{
-    if (rule && rule->kind == HeadingRule::Kind::Clearest) return "clearance";
-    if (rule && rule->kind == HeadingRule::Kind::Along) return "way";
-    return "";
-}
-
-/// Appends the tilt and what follows it in the lines of a settled raster.
-void append_rest(std::string& text, const RasterRest& rest, const std::optional<HeadingRule>& rule)
-{
-    for (const double value : {rest.tilt, rest.margin, rest.tip_over, rest.belly}) append_if_known(text, value);
-    if (rule && rule->has_several()) (text += ',') += std::to_string(rest.valid_headings);
-    append_if_known(text, rest.layer_height);
-    if (!free_length_column(rule).empty()) append_if_known(text, rest.free_length);
-}
-
-/// Returns the header of a settled raster.
-std::string settled_raster_header(const std::optional<HeadingRule>& rule)
-{
-    std::string names = "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly";
-    if (rule && rule->has_several()) names += ",valid_headings";
-    names += ",ground";
-    if (const std::string name = free_length_column(rule); !name.empty()) names += "," + name;
-    return names;
-}
-
-/// Appends a line x,y,z,yaw,layer,verdict for each pose. `rests` is empty, or has one for each pose: then the lines
-/// also have roll, pitch and how the robot stands. With a rule, their yaws are those of `rests`.
-void append_rows(std::string& text, std::span<const RasterPose> poses, std::span<const RasterRest> rests,
-                 const std::string& yaw, const std::optional<HeadingRule>& rule)
-{
-    double last_y = std::numeric_limits<double>::quiet_NaN();
-    std::string y;  // the text of last_y; a row of poses has the same y, and making the text takes time
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-        const RasterPose& pose = poses[i];
-        if (pose.y != last_y) y = number(last_y = pose.y);
-        append_number(text, pose.x);
-        ((text += ',') += y) += ',';
-        append_number(text, pose.z);
-        if (!rests.empty()) {
-            text += ',';
-            append_numbers(text, {rests[i].roll, rests[i].pitch});
-        }
-        ((text += ',') += rule && !rests.empty() ? number(rests[i].yaw) : yaw) += ',';
-        if (pose.layer >= 0) text += std::to_string(pose.layer);
-        text += ',';
-        text += to_string(pose.verdict);
-        if (!rests.empty()) append_rest(text, rests[i], rule);
-        text += '\n';
-    }
-}
-
 Json bounds_json(const Bounds& bounds, int axes)
 {
     Json out = Json::array();
@@ -266,6 +196,29 @@ void name_all(std::vector<RobotStart>& robots, const std::vector<std::string>& n
 
 }  // namespace
 
+void append_numbers(std::string& text, std::initializer_list<double> values)
+{
+    bool first = true;
+    for (const double value : values) {
+        if (!first) text += ',';
+        first = false;
+        append_number(text, value);
+    }
+}
+
+void append_if_known(std::string& text, double value)
+{
+    text += ',';
+    if (!std::isnan(value)) append_number(text, value);
+}
+
+std::string free_length_column(const std::optional<HeadingRule>& rule)
+{
+    if (rule && rule->kind == HeadingRule::Kind::Clearest) return "clearance";
+    if (rule && rule->kind == HeadingRule::Kind::Along) return "way";
+    return "";
+}
+
 std::string with_columns(const PoseTable& table, const std::vector<std::string>& names,
                          const std::function<void(std::string&, std::size_t)>& append)
 {
@@ -354,41 +307,6 @@ std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& 
     return table_csv(table, true, repairs, append);
 }
 
-void write_raster_csv(const RasterResult& raster, bool aerial, const std::function<void(std::string_view)>& sink,
-                      int threads)
-{
-    constexpr std::size_t piece = 1 << 12, batch = 1 << 16;  // poses of a text, and of a loop of several threads
-    const std::string yaw = number(raster.yaw);
-    const bool is_settled = !raster.rests.empty() || (raster.stance == Stance::Settled && raster.poses.empty());
-    if (is_settled && raster.rests.size() != raster.poses.size())
-        throw ArgumentError("write_raster_csv", "size of raster.rests", double(raster.rests.size()),
-                            "as many as its poses, or none");
-    std::vector<RasterPose> poses;
-    poses.reserve(std::min<std::size_t>(batch, raster.counts.total()));
-    std::vector<std::string> texts;
-    std::size_t written = 0;  // poses
-    const auto write = [&] {
-        texts.resize((poses.size() + piece - 1) / piece);
-        parallel_for(texts.size(), threads, {}, [&](std::size_t i) {
-            const std::size_t first = i * piece, count = std::min(piece, poses.size() - first);
-            texts[i].clear();
-            append_rows(
-                texts[i], std::span(poses).subspan(first, count),
-                is_settled ? std::span(raster.rests).subspan(written + first, count) : std::span<const RasterRest>(),
-                yaw, raster.heading);
-        });
-        for (const std::string& text : texts) sink(text);
-        written += poses.size();
-        poses.clear();
-    };
-    sink((is_settled ? settled_raster_header(raster.heading) : "x,y,z,yaw,layer,verdict") + "\n");
-    for_each_pose(raster, aerial, [&](const RasterPose& pose) {
-        poses.push_back(pose);
-        if (poses.size() == batch) write();
-    });
-    write();
-}
-
 std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names,
                                      const std::vector<std::string>& name_spaces)
 {
@@ -460,7 +378,8 @@ Json sample_settings_json(const SampleOptions& options, const Judge& judge)
     if (const std::string rules = to_string(options.place); !rules.empty()) settings["place"] = rules;
     for (const auto& [quantity, weight] : options.measures.prefer) settings["prefer"][to_string(quantity)] = weight;
     if (options.measures.sensor_height) settings["sensor_height"] = *options.measures.sensor_height;
-    if (measures_view(options.measures)) settings["view_range"] = options.measures.view_range;
+    if (asks_for(options.measures, PlaceQuantity::View)) settings["view_range"] = options.measures.view_range;
+    if (asks_for(options.measures, PlaceQuantity::Room)) settings["room_range"] = options.measures.room_range;
     if (!options.place.facing.empty()) settings["yaw"] = "facing " + options.place.facing;
     if (!options.reachable_name.empty()) settings["islands"] = options.reachable_name;
     return settings;

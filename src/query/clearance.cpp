@@ -59,6 +59,7 @@ public:
         points_.push_back(point);
     }
 
+    bool has(const Vec3& point) const { return std::find(points_.begin(), points_.end(), point) != points_.end(); }
     bool is_sliced() const { return !crossings_.empty(); }
     Vec2 nearest() const { return nearest_in_hull(crossings_); }
 
@@ -95,7 +96,7 @@ double distance_of_boxes(const Bounds& a, const Bounds& b)
 
 }  // namespace
 
-double horizontal_distance(const Convex& a, const Convex& b)
+double horizontal_distance(const Convex& a, const Convex& b, double most)
 {
     constexpr int most_steps = 100;
     const auto least = [&](const Vec3& way) -> Vec3 { return b.support(-way) - a.support(way); };
@@ -111,7 +112,10 @@ double horizontal_distance(const Convex& a, const Convex& b)
         const Vec2 u = nearest / distance;
         const Vec3 way(u.x(), u.y(), hull.slope_at(u, distance));
         const Vec3 point = least(way);
-        if (point.dot(way) >= distance - precise) break;
+        const double lower_limit = point.dot(way);
+        if (lower_limit > most) return std::numeric_limits<double>::infinity();
+        // If the farthest point is known already, only rounding could make the distance smaller.
+        if (lower_limit >= distance - precise || hull.has(point)) break;
         hull.add(point);
     }
     return distance;
@@ -122,30 +126,54 @@ ClearanceMeter::ClearanceMeter(const Geometry& geometry, const Robot& robot) : g
     for (const RobotPart& part : robot.parts) parts_.push_back(convex_of(part));
 }
 
-double ClearanceMeter::clearance_at(const Pose& pose) const
+std::vector<Convex> ClearanceMeter::parts_at(const Mat3& rotation) const
+{
+    std::vector<Convex> out;
+    for (const Convex& part : parts_) out.push_back(moved(part, {Vec3::Zero(), rotation}));
+    return out;
+}
+
+double ClearanceMeter::clearance_at(const Pose& pose, Nearest* neighbour) const
 {
     constexpr double first_reach = most / 16;
-    std::vector<Convex> parts;
+    // Elements that are farther away than the nearest one by at most this are measured, too. So the clearance is the
+    // least of the same distances, in whichever order they are measured.
+    constexpr double tie = 2 * precise;
+    const std::vector<Convex> parts = parts_at(pose.rotation);
     std::vector<Bounds> boxes;
     Bounds robot;
-    for (const Convex& part : parts_) {
-        parts.push_back(moved(part, {Vec3::Zero(), pose.rotation}));
-        boxes.push_back(parts.back().bounds());
+    for (const Convex& part : parts) {
+        boxes.push_back(part.bounds());
         robot.extend(boxes.back().min);
         robot.extend(boxes.back().max);
     }
     double out = most;
+    const auto distance_to = [&](const Convex& body, const Bounds& box) {
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < parts.size(); ++k)
+            if (distance_of_boxes(boxes[k], box) <= std::min(least, out) + tie)
+                least = std::min(least, horizontal_distance(parts[k], body, std::min(least, out) + tie));
+        return least;
+    };
     const auto measure = [&](const Tile& tile, std::uint32_t element) {
         Bounds box = tile.bounds(element);
         box.min -= pose.position;
         box.max -= pose.position;
-        if (!(distance_of_boxes(robot, box) < out)) return;
-        const Convex body = body_of(tile, element, pose.position);
-        for (std::size_t k = 0; k < parts.size(); ++k)
-            if (distance_of_boxes(boxes[k], box) < out) out = std::min(out, horizontal_distance(parts[k], body));
+        if (!(distance_of_boxes(robot, box) <= out + tie)) return;
+        Convex body = body_of(tile, element, pose.position);
+        const double distance = distance_to(body, box);
+        if (!(distance < out)) return;
+        out = distance;
+        if (neighbour != nullptr) *neighbour = {std::move(body), pose.position, true};
     };
     // Looks near the robot first: if something is there, most of what is farther away need not be looked at.
-    for (double reach = first_reach; reach <= most && out > reach / 2; reach *= 2) {
+    double reach = first_reach;
+    if (neighbour != nullptr && neighbour->is_known) {
+        const Convex body = moved(neighbour->body, {neighbour->origin - pose.position, Mat3::Identity()});
+        out = std::min(most, distance_to(body, body.bounds()) + tie);
+        if (out < most) reach = out + tie;
+    }
+    for (;; reach *= 2) {
         const Vec3 by(reach, reach, 0);
         const Bounds near{robot.min + pose.position - by, robot.max + pose.position + by};
         geometry_.impl().visit_tiles(near, [&](const Tile& tile, const ElementBox&) {
@@ -153,8 +181,8 @@ double ClearanceMeter::clearance_at(const Pose& pose) const
                 if (tile.label(element) == Label::Obstacle) measure(tile, element);
             });
         });
+        if (out + tie <= reach || reach >= most) return out;
     }
-    return out;
 }
 
 }  // namespace spawnfield

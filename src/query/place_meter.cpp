@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace spawnfield {
 namespace {
@@ -23,35 +24,43 @@ constexpr int view_directions = 64;
 
 bool is_of_settled(PlaceQuantity quantity)
 {
-    return quantity == PlaceQuantity::Tilt || quantity == PlaceQuantity::Margin;
+    return quantity == PlaceQuantity::Tilt || quantity == PlaceQuantity::Margin || quantity == PlaceQuantity::Room;
 }
 
-void check_quantity(PlaceQuantity quantity, bool is_settled)
+void check_quantity(const char* function, PlaceQuantity quantity, bool is_settled)
 {
     if (is_of_settled(quantity) && !is_settled)
-        throw ArgumentError("sample", std::string("the quantity ") + to_string(quantity) +
+        throw ArgumentError(function, std::string("the quantity ") + to_string(quantity) +
                                           " is only known of settled robots; give stance Settled, or leave it out");
 }
 
-void check_measures(const PlaceMeasures& measures, bool is_settled)
+void check_measures(const char* function, const PlaceMeasures& measures, bool is_settled)
 {
     for (auto at = measures.columns.begin(); at != measures.columns.end(); ++at) {
-        check_quantity(*at, is_settled);
+        check_quantity(function, *at, is_settled);
         if (std::find(measures.columns.begin(), at, *at) != at)
-            throw ArgumentError("sample", std::string("the column ") + to_string(*at) + " is given twice, needs once");
+            throw ArgumentError(function, std::string("the column ") + to_string(*at) + " is given twice, needs once");
     }
     for (const PlaceMeasures::Preference& factor : measures.prefer) {
-        check_quantity(factor.quantity, is_settled);
+        check_quantity(function, factor.quantity, is_settled);
         if (factor.quantity == PlaceQuantity::Tilt || factor.quantity == PlaceQuantity::Roughness)
-            throw ArgumentError("sample", std::string("prefer has ") + to_string(factor.quantity) +
-                                              ", of which less is better; needs clearance, head_room, margin or view");
+            throw ArgumentError(function,
+                                std::string("prefer has ") + to_string(factor.quantity) +
+                                    ", of which less is better; needs clearance, head_room, margin, view or room");
         if (!(factor.weight > 0) || !std::isfinite(factor.weight))
-            throw ArgumentError("sample", "prefer.weight", factor.weight, "> 0");
+            throw ArgumentError(function, "prefer.weight", factor.weight, "> 0");
     }
     if (!(measures.view_range > 0) || !std::isfinite(measures.view_range))
-        throw ArgumentError("sample", "view_range", measures.view_range, "> 0 m");
+        throw ArgumentError(function, "view_range", measures.view_range, "> 0 m");
+    if (asks_for(measures, PlaceQuantity::Room)) {
+        if (!measures.room)
+            throw ArgumentError(function, "the quantity room needs measures.room, for example room_on(graph, range)");
+        if (!(measures.room_range > 0 && measures.room_range <= PlaceMeasures::most_room_range))
+            throw ArgumentError(function, "room_range", measures.room_range,
+                                "> 0 and at most " + std::to_string(int(PlaceMeasures::most_room_range)) + " m");
+    }
     if (measures.sensor_height && !std::isfinite(*measures.sensor_height))
-        throw ArgumentError("sample", "sensor_height", *measures.sensor_height, "a finite number, m");
+        throw ArgumentError(function, "sensor_height", *measures.sensor_height, "a finite number, m");
 }
 
 }  // namespace
@@ -65,33 +74,37 @@ const char* to_string(PlaceQuantity quantity)
     case PlaceQuantity::Margin: return "margin";
     case PlaceQuantity::Roughness: return "roughness";
     case PlaceQuantity::View: return "view";
+    case PlaceQuantity::Room: return "room";
     }
     return "";
 }
 
-bool measures_view(const PlaceMeasures& measures)
+bool asks_for(const PlaceMeasures& measures, PlaceQuantity quantity)
 {
-    return std::find(measures.columns.begin(), measures.columns.end(), PlaceQuantity::View) != measures.columns.end() ||
+    return std::find(measures.columns.begin(), measures.columns.end(), quantity) != measures.columns.end() ||
            std::any_of(measures.prefer.begin(), measures.prefer.end(),
-                       [](const auto& factor) { return factor.quantity == PlaceQuantity::View; });
+                       [&](const auto& factor) { return factor.quantity == quantity; });
 }
 
-PlaceMeter::PlaceMeter(const Geometry& geometry, const Robot& robot, const PlaceMeasures& measures, bool is_settled)
+PlaceMeter::PlaceMeter(const char* function, const Geometry& geometry, const Robot& robot,
+                       const PlaceMeasures& measures, bool is_settled)
     : geometry_(geometry), measures_(measures), clearances_(geometry, robot), box_(robot.bounds())
 {
-    check_measures(measures, is_settled);
+    check_measures(function, measures, is_settled);
     for (const RobotPart& part : robot.parts) bodies_.push_back(convex_of(part));
 }
 
-double PlaceMeter::measure(PlaceQuantity quantity, const Pose& pose, double tilt, double margin) const
+double PlaceMeter::measure(PlaceQuantity quantity, const Pose& pose, double tilt, double margin,
+                           Neighbour* neighbour) const
 {
     switch (quantity) {
-    case PlaceQuantity::Clearance: return clearances_.clearance_at(pose);
+    case PlaceQuantity::Clearance: return clearances_.clearance_at(pose, neighbour);
     case PlaceQuantity::HeadRoom: return head_room(pose);
     case PlaceQuantity::Tilt: return tilt;
     case PlaceQuantity::Margin: return margin;
     case PlaceQuantity::Roughness: return roughness(pose);
     case PlaceQuantity::View: return view(pose);
+    case PlaceQuantity::Room: return measures_.room(pose);
     }
     return 0;
 }
@@ -114,6 +127,7 @@ double PlaceMeter::most_of(PlaceQuantity quantity) const
     case PlaceQuantity::HeadRoom: return most_head_room;
     // The margin is at most the radius of a circle around all contacts, and these are parts of the robot.
     case PlaceQuantity::Margin: return (box_.max - box_.min).norm() / 2;
+    case PlaceQuantity::Room: return std::numbers::pi * measures_.room_range * measures_.room_range;
     default: return 1;
     }
 }

@@ -406,7 +406,8 @@ SpawnList sample(const Judge& judge, const SampleOptions& wanted)
                             "place.facing is given together with a heading rule or a random yaw, which also "
                             "choose the yaw; leave one of them out");
     const PlaceJudge places(judge.map().geometry, judge.robot(), wanted.place, wanted.measures.sensor_height);
-    const PlaceMeter meter(judge.map().geometry, judge.robot(), wanted.measures, wanted.stance == Stance::Settled);
+    const PlaceMeter meter("sample", judge.map().geometry, judge.robot(), wanted.measures,
+                           wanted.stance == Stance::Settled);
     SampleOptions options = wanted;
     options.offset = wanted.offset.value_or(auto_offset(judge.robot()));
     if (options.stance == Stance::Settled)

@@ -70,7 +70,18 @@ void check_options(const ExportArgs& args, const CLI::App& command)
         if (option->count() == 0 || contains(general, name) || uses(format, name)) continue;
         throw ArgumentError(name + " is not for --format " + args.format + "; it is for " + users_of(name));
     }
-    if (args.robot.empty()) refuse(command, pose_options(), "needs --robot");
+    if (args.robot.empty()) {
+        refuse(command, pose_options(), "needs --robot");
+        refuse(command, quantity_setting_names, "needs --robot");
+        refuse(command, {"--bands"}, "needs --robot");
+    }
+}
+
+/// Returns whether the room to manoeuvre is a band, which needs the drivable graph.
+bool asks_for_room(const ExportArgs& args)
+{
+    const std::vector<std::string> bands = CLI::detail::split(args.bands, ',');
+    return contains(bands, to_string(PlaceQuantity::Room));
 }
 
 Ending run_export(const ExportArgs& args, const CLI::App& command, Summary& summary)
@@ -81,7 +92,8 @@ Ending run_export(const ExportArgs& args, const CLI::App& command, Summary& summ
     const ExportFormat& format = format_of(args.format);
     IslandChoice islands;
     if (session.judge && uses(format, "--island"))
-        islands = choice_for(session.map, args, args.islands, command, island_choice(args, args.islands, command));
+        islands = choice_for(session.map, args, args.islands, command, island_choice(args, args.islands, command),
+                             asks_for_room(args));
     format.write({args, command, session, summary, islands});
     if (!args.out.empty() && args.out != "-") summary.extra.push_back(args.out);
     return {};
@@ -132,6 +144,9 @@ void add_export(CLI::App& app, ChosenCommand& chosen)
     command.add_option("--resolution", args->resolution, "nav2, geotiff: side of a pixel, m (default: the map's)");
     command.add_option("--step", args->step, "ply: distance between columns, m");
     command.add_flag("--local", args->local, "geotiff: use the map's own frame, not the survey's coordinates");
+    command.add_option("--bands", args->bands,
+                       "geotiff: bands with these quantities of the places where the robot can stand, with commas "
+                       "between them: clearance, head_room, roughness, view, room");
     add_ground(
         command, args->ground,
         "Layers that count: top (the default), bottom, N from the top (0 first), or all (only ply, its default)");
@@ -139,6 +154,7 @@ void add_export(CLI::App& app, ChosenCommand& chosen)
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Settled);
     add_islands(command, args->islands);
+    add_quantity_settings(command, args->places);
     start_group(command, help_group::region);
     command.add_option(
         "--bounds", args->bounds,

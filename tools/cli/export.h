@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ground_args.h"
+#include "place_args.h"
 #include "reach_args.h"
 #include "session.h"
 #include "simulator_output.h"
@@ -11,7 +12,8 @@ namespace spawnfield::cli {
 struct ExportArgs : QueryArgs {
     GroundArgs ground;
     IslandArgs islands;
-    std::string format, out, bounds, poses, yaw = "0";
+    PlaceArgs places;
+    std::string format, out, bounds, poses, bands, yaw = "0";
     bool local = false;
     SimulatorArgs simulator;
     double resolution = 0, step = 0;

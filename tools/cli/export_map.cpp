@@ -17,7 +17,8 @@ std::vector<std::string> with(std::vector<std::string> names, const std::vector<
     return names;
 }
 
-RasterOptions raster_options(const ExportJob& job, const std::string& layers)
+/// `measures`: what is measured of the poses.
+RasterOptions raster_options(const ExportJob& job, const std::string& layers, PlaceMeasures* measures = nullptr)
 {
     const ExportArgs& args = job.args;
     RasterOptions options{.yaw = parse_yaw(args, args.yaw),
@@ -30,7 +31,10 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
     options.offset = choose_offset(args, options.offset, job.session.robot, job.summary);
     notice_if_no_layer(args, job.session.map, options.layers);
     require_above_ground(job.session.robot, options.offset);
-    const ChosenIslands chosen = choose_islands(args, args.islands, job.islands, job.session, job.summary, "export");
+    const bool has_room = measures != nullptr && asks_for(*measures, PlaceQuantity::Room);
+    const ChosenIslands chosen = choose_islands(args, args.islands, job.islands, job.session, job.summary, "export",
+                                                has_room);
+    if (has_room) set_room(*measures, chosen);
     if (!chosen.why_none.empty()) notice(args, chosen.why_none);
     options.is_reachable = chosen.filter;
     return options;
@@ -62,9 +66,9 @@ void check_one_layer(const ExportJob& job, const LayerChoice& layers)
 }
 
 /// Returns the options for one layer, because a pixel has one value.
-RasterOptions image_options(const ExportJob& job)
+RasterOptions image_options(const ExportJob& job, PlaceMeasures* measures = nullptr)
 {
-    const RasterOptions options = raster_options(job, "top");
+    const RasterOptions options = raster_options(job, "top", measures);
     check_one_layer(job, options.layers);
     return options;
 }
@@ -76,10 +80,27 @@ GridFrame image_frame(const ExportJob& job)
                                                                   : map.resolution);
 }
 
-VerdictImage ask(const ExportJob& job, const RasterOptions& options, const GridFrame& frame)
+/// Returns the quantities of --bands. Throws ArgumentError for those that the file has anyway.
+PlaceMeasures band_measures(const ExportJob& job)
+{
+    PlaceMeasures out = place_measures(job.args.places, job.command, "--bands", job.args.bands);
+    if (asks_for(out, PlaceQuantity::Room) && !job.args.is_settled())
+        throw ArgumentError("--bands room is only for settled robots; leave --stance level out");
+    for (const PlaceQuantity quantity : out.columns) {
+        if (quantity == PlaceQuantity::Clearance)
+            notice_if_no_obstacles(job.args, "--bands clearance", job.session.map);
+        if (quantity == PlaceQuantity::Tilt || quantity == PlaceQuantity::Margin)
+            throw ArgumentError(std::string("--bands has \"") + to_string(quantity) +
+                                "\", but the file of a settled robot has this band anyway; leave it out");
+    }
+    return out;
+}
+
+VerdictImage ask(const ExportJob& job, const RasterOptions& options, const GridFrame& frame,
+                 const PlaceMeasures& measures = {})
 {
     notices_about_stance(job.args, job.command, job.session.robot);
-    VerdictImage image = verdict_image(*job.session.judge, frame, options);
+    VerdictImage image = verdict_image(*job.session.judge, frame, options, measures);
     job.summary.lap("query");
     job.summary.set_verdicts(image.counts, image.exact_checks);
     return image;
@@ -109,8 +130,9 @@ void write_geotiff(const ExportJob& job)
     const GridFrame frame = image_frame(job);
     std::optional<VerdictImage> verdicts;
     if (job.has_robot()) {
-        const RasterOptions asked = image_options(job);
-        verdicts = ask(job, asked, frame);
+        PlaceMeasures measures = band_measures(job);
+        const RasterOptions asked = image_options(job, &measures);
+        verdicts = ask(job, asked, frame, measures);
         options.layers = asked.layers;
         options.z = asked.z;
     } else {
@@ -179,9 +201,10 @@ std::vector<ExportFormat> map_formats()
          with(pose_options(), {"--layers", "--z", "--floor", "--resolution"}),
          write_nav2},
         {"geotiff",
-         "bands of elevation, layers, clearance, slope, water and obstacle; with --robot also of verdicts",
+         "bands of elevation, layers, free height, slope, water and obstacle; with --robot also of verdicts",
          {"--out"},
-         with(pose_options(), {"--robot", "--layers", "--z", "--floor", "--resolution", "--local"}),
+         with(pose_options(), with(quantity_setting_names,
+                                   {"--robot", "--layers", "--z", "--floor", "--resolution", "--local", "--bands"})),
          write_geotiff},
         {"ply",
          "a point for each pose of --robot, every --step metres, coloured by verdict",

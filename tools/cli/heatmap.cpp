@@ -6,6 +6,7 @@
 #include "messages.h"
 #include "numbers.h"
 #include "picture_args.h"
+#include "place_args.h"
 #include "reach_args.h"
 #include "session.h"
 #include "spelling.h"
@@ -14,6 +15,7 @@
 #include <spawnfield/headings.h>
 #include <spawnfield/heatmap.h>
 #include <spawnfield/raster_islands.h>
+#include <spawnfield/raster_quantities.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +28,7 @@ struct HeatmapArgs : QueryArgs {
     AreaArgs area;
     GroundArgs ground;
     IslandArgs islands;
+    PlaceArgs places;
     HeatmapMarkArgs marks;
     std::string out, format, quantity = "verdict", bounds, yaw;
     double step = 0;
@@ -41,8 +44,9 @@ double default_step(const Map& map, const RasterOptions& options)
 }
 
 /// The values of --quantity, in the order of HeatmapQuantity.
-const std::vector<std::string> quantities{"verdict", "height", "clearance", "slope", "tilt",
-                                          "roll",    "pitch",  "margin",    "belly", "island"};
+const std::vector<std::string> quantities{"verdict",   "height", "slope", "clearance", "head_room",
+                                          "roughness", "view",   "room",  "tilt",      "roll",
+                                          "pitch",     "margin", "belly", "island"};
 
 HeatmapQuantity quantity_of(const std::string& name)
 {
@@ -152,15 +156,17 @@ void add_islands_to(HeatmapOptions& picture, const HeatmapArgs& args, const Sess
 Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& summary)
 {
     const PictureFile file = picture_file(args.out, args.format);
-    const bool shows_islands = args.quantity == "island";
+    const bool shows_islands = args.quantity == "island", shows_room = args.quantity == "room";
     const IslandChoice asked_islands = island_choice(args, args.islands, command);
     RasterOptions options = raster_options(args, command);
     HeatmapOptions picture{.quantity = quantity_of(args.quantity), .pixels = args.size, .threads = args.threads};
     const std::optional<Facing> asked_facing = given_facing(args);
     const KindRobots kind_robots = read_marks(args, args.marks, picture);
-    if (is_of_rest(picture.quantity) && !args.is_settled())
+    if ((is_of_rest(picture.quantity) || shows_room) && !args.is_settled())
         throw ArgumentError("--quantity " + args.quantity +
                             " is about the robot at rest; leave --stance level out, or choose another quantity");
+    PlaceMeasures measures = place_measures(args.places, command, "--quantity",
+                                            is_measured(picture.quantity) ? args.quantity : "");
     const Session session = open_session(args, summary);
     notice_if_off_map(args, session.map, "--bounds", options.bounds);
     notice_about_area(args, session.map, options.area);
@@ -168,13 +174,15 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     options.z = with_floor(options.z, args.ground, session.map);
     keep_heights(args, session.map, options.z, picture);
     const Facing facing = asked_facing ? *asked_facing : facing_of(args, picture.spawns);
-    if (is_of_rest(picture.quantity) && facing.is_any)
+    if ((is_of_rest(picture.quantity) || is_measured(picture.quantity)) && facing.is_any)
         throw ArgumentError("--quantity " + args.quantity +
-                            " needs one heading at each place; give --yaw an angle, for example 90deg, or a rule that "
-                            "chooses one, for example best:16");
+                            " needs one heading at each place; give --yaw an angle, for example 90deg" +
+                            (args.is_settled() ? ", or a rule that chooses one, for example best:16" : ""));
     options.yaw = facing.yaw;
     options.heading = facing.rule;
     notices_about_stance(args, command, session.robot);
+    if (picture.quantity == HeatmapQuantity::Clearance)
+        notice_if_no_obstacles(args, "--quantity clearance", session.map);
     notice_about_heading(args, session.map, options.heading);
     options.offset = choose_offset(args, options.offset, session.robot, summary);
     require_above_ground(session.robot, options.offset);
@@ -183,11 +191,16 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     options.step = command.count("--step") > 0 ? parse_positive("--step", args.step)
                                                : default_step(session.map, options);
     summary.lap("load");
-    const IslandChoice islands = choice_for(session.map, args, args.islands, command, asked_islands, shows_islands);
-    const ChosenIslands chosen = choose_islands(args, args.islands, islands, session, summary, "heatmap");
+    const IslandChoice islands = choice_for(session.map, args, args.islands, command, asked_islands,
+                                            shows_islands || shows_room);
+    const ChosenIslands chosen = choose_islands(args, args.islands, islands, session, summary, "heatmap", shows_room);
+    set_room(measures, chosen);
     if (!chosen.why_none.empty()) notice(args, chosen.why_none);
     options.is_reachable = chosen.filter;
     const RasterResult result = shown_raster(session, options, facing.is_any, picture);
+    if (is_measured(picture.quantity))
+        picture.values = raster_quantity(*session.judge, result, measures.columns[0], measures,
+                                         {.threads = args.threads, .progress = progress_bar(args, "measuring")});
     summary.lap("query");
     if (shows_islands) add_islands_to(picture, args, session, chosen, result, summary);
     picture.title = session.map.name + ", " + session.robot.name;
@@ -215,8 +228,9 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
         ->check(not_empty());
     command
         .add_option("--quantity", args->quantity,
-                    "verdict, height, clearance or slope; for settled robots also tilt, roll, pitch, margin, belly or "
-                    "island: ground within which the robot can drive (default verdict)")
+                    "verdict, height, slope, clearance, head_room, roughness or view; for settled robots also room, "
+                    "tilt, roll, pitch, margin, belly or island: ground within which the robot can drive (default "
+                    "verdict)")
         ->check(one_of(quantities));
     add_heatmap_marks(command, args->marks);
     command.add_option("--yaw", args->yaw,
@@ -239,6 +253,7 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Settled);
     add_islands(command, args->islands);
+    add_quantity_settings(command, args->places);
     add_area(command, args->area);
     command.add_option(
         "--bounds", args->bounds,

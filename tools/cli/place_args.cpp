@@ -51,7 +51,7 @@ PlaceRules::Distance parse_distance(const std::pair<std::string, std::string>& t
     return {values[0], values[1], range.low, range.high};
 }
 
-const std::string quantity_help = "clearance, head_room, tilt, margin, roughness, view";
+const std::string quantity_help = "clearance, head_room, tilt, margin, roughness, view, room";
 
 PlaceQuantity parse_quantity(const std::string& option, const std::string& name)
 {
@@ -68,7 +68,7 @@ std::vector<std::string> words_between_commas(const std::string& text)
 
 }  // namespace
 
-void add_places(CLI::App& command, PlaceArgs& args)
+void add_place_rules(CLI::App& command, PlaceArgs& args)
 {
     start_group(command, help_group::place);
     const auto add = [&](const char* name, auto& values, const char* help) {
@@ -90,22 +90,63 @@ void add_places(CLI::App& command, PlaceArgs& args)
     add("--in-view-of", args.in_view_of,
         "x,y,z in m: no terrain or obstacle is between this point and the robot's sensor (repeatable)");
     add("--hidden-from", args.hidden_from, "x,y,z in m: the opposite (repeatable)");
+}
+
+void add_quantity_settings(CLI::App& command, PlaceArgs& args)
+{
+    start_group(command, help_group::place);
     command.add_option("--sensor-height", args.sensor_height,
                        "m above the robot's origin, of the sensor (default: that of the robot's highest point)");
+    command.add_option("--view-range", args.view_range, "m: how far a line of sight is free for view (default 10)");
+    command.add_option("--room-range", args.room_range,
+                       "m: how far the robot drives for room, the area to which it gets (default 3)");
+}
+
+void add_measures(CLI::App& command, PlaceArgs& args)
+{
+    start_group(command, help_group::place);
     command.add_option("--columns", args.columns,
                        "Write columns with these quantities of each spawn, with commas between them: " + quantity_help);
     command.add_option("--prefer", args.prefer,
                        "QUANTITY=WEIGHT,...: more spawns where these quantities are large; the density is proportional "
-                       "to the product of clearance, head_room, margin or view to the power of their weights, for "
-                       "example clearance=1,margin=0.5");
-    command.add_option("--view-range", args.view_range, "m: how far a line of sight is free for view (default 10)");
+                       "to the product of clearance, head_room, margin, view or room to the power of their weights, "
+                       "for example clearance=1,margin=0.5");
 }
+
+namespace {
+
+/// Reads the options of add_quantity_settings(). asking(name) returns the options that ask for a quantity.
+template <class Asking>
+void read_settings(const PlaceArgs& args, const CLI::App& command, const Asking& asking, PlaceMeasures& out)
+{
+    const auto length_of = [&](const char* option, PlaceQuantity quantity, double value, double& length) {
+        if (command.count(option) == 0) return;
+        if (!asks_for(out, quantity))
+            throw ArgumentError(std::string(option) + " is only for " + asking(std::string(to_string(quantity))));
+        length = parse_positive(option, value);
+    };
+    length_of("--view-range", PlaceQuantity::View, args.view_range, out.view_range);
+    length_of("--room-range", PlaceQuantity::Room, args.room_range, out.room_range);
+    if (out.room_range > PlaceMeasures::most_room_range)
+        throw bad_value("--room-range", out.room_range, "at most " + number(PlaceMeasures::most_room_range) + " m");
+    if (command.count("--sensor-height") == 0) return;
+    if (!asks_for(out, PlaceQuantity::View) && args.in_view_of.empty() && args.hidden_from.empty())
+        throw ArgumentError("--sensor-height is only for --in-view-of, --hidden-from and view; give one of them");
+    out.sensor_height = parse_finite("--sensor-height", args.sensor_height, "m");
+}
+
+std::vector<PlaceQuantity> place_quantities(const std::string& option, const std::string& names)
+{
+    std::vector<PlaceQuantity> out;
+    for (const std::string& name : words_between_commas(names)) out.push_back(parse_quantity(option, name));
+    return out;
+}
+
+}  // namespace
 
 PlaceMeasures place_measures(const PlaceArgs& args, const CLI::App& command)
 {
-    PlaceMeasures out;
-    for (const std::string& name : words_between_commas(args.columns))
-        out.columns.push_back(parse_quantity("--columns", name));
+    PlaceMeasures out{.columns = place_quantities("--columns", args.columns)};
     for (const std::string& text : words_between_commas(args.prefer)) {
         const std::size_t equals = text.find('=');
         if (equals == std::string::npos)
@@ -114,16 +155,19 @@ PlaceMeasures place_measures(const PlaceArgs& args, const CLI::App& command)
         out.prefer.push_back({parse_quantity("--prefer", text.substr(0, equals)), weights[0]});
         if (!(weights[0] > 0)) throw bad_value("the weight of --prefer " + text, weights[0], "> 0");
     }
-    if (command.count("--view-range") > 0) {
-        if (!measures_view(out))
-            throw ArgumentError("--view-range is only for --columns view and --prefer view=WEIGHT");
-        out.view_range = parse_positive("--view-range", args.view_range);
-    }
-    if (command.count("--sensor-height") > 0) {
-        if (!measures_view(out) && args.in_view_of.empty() && args.hidden_from.empty())
-            throw ArgumentError("--sensor-height is only for --in-view-of, --hidden-from and view; give one of them");
-        out.sensor_height = parse_finite("--sensor-height", args.sensor_height, "m");
-    }
+    const auto asking = [](const std::string& name) {
+        return "--columns " + name + " and --prefer " + name + "=WEIGHT";
+    };
+    read_settings(args, command, asking, out);
+    return out;
+}
+
+PlaceMeasures place_measures(const PlaceArgs& args, const CLI::App& command, const std::string& option,
+                             const std::string& quantities)
+{
+    PlaceMeasures out{.columns = place_quantities(option, quantities)};
+    read_settings(
+        args, command, [&](const std::string& name) { return option + " " + name; }, out);
     return out;
 }
 
@@ -151,6 +195,15 @@ PlaceRules place_rules(const PlaceArgs& args, const CLI::App& command)
     return out;
 }
 
+void notice_if_no_obstacles(const CommonArgs& common, const std::string& option, const Map& map)
+{
+    const LabelCount& obstacles = map.geometry.labels()[std::size_t(Label::Obstacle)];
+    if (obstacles.triangles + obstacles.primitives == 0)
+        notice(common, option +
+                           " has no effect, because the map has no obstacles; `bake --auto-label slope=30` makes "
+                           "steep faces obstacles");
+}
+
 void check_places(const CommonArgs& common, const PlaceRules& rules, const Map& map)
 {
     const auto check = [&](const char* option, const std::string& glob) {
@@ -160,11 +213,7 @@ void check_places(const CommonArgs& common, const PlaceRules& rules, const Map& 
     for (const std::string& glob : rules.not_on) check("--not-on", glob);
     for (const PlaceRules::Near& near : rules.near) check("--near", near.parts);
     if (!rules.facing.empty()) check("--facing", rules.facing);
-    const LabelCount& obstacles = map.geometry.labels()[std::size_t(Label::Obstacle)];
-    if (rules.clearance > 0 && obstacles.triangles + obstacles.primitives == 0)
-        notice(common,
-               "--clearance has no effect, because the map has no obstacles; `bake --auto-label slope=30` makes "
-               "steep faces obstacles");
+    if (rules.clearance > 0) notice_if_no_obstacles(common, "--clearance", map);
 }
 
 }  // namespace spawnfield::cli

@@ -10,6 +10,7 @@
 
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>
+#include <spawnfield/raster_cells.h>
 
 #include <cmath>
 
@@ -18,7 +19,7 @@ namespace {
 
 struct RasterCommandArgs : RasterArgs {
     double step = 0, step_z = 0;
-    bool write_aerial = false;
+    bool write_aerial = false, adaptive = false;
     std::string format = "csv", out, heatmap;
 
     bool is_thesis() const { return format == "thesis"; }
@@ -33,6 +34,17 @@ void check_write_aerial(const RasterCommandArgs& args, const CLI::App& command, 
         throw ArgumentError("--write-aerial needs --layers all: aerial poses do not belong to a layer");
 }
 
+void check_adaptive(const RasterCommandArgs& args)
+{
+    if (!args.adaptive) return;
+    if (args.dims != 2)
+        throw ArgumentError("--adaptive is only for --dims 2: its cells are squares of columns; give --dims 2");
+    if (args.is_thesis())
+        throw ArgumentError("--adaptive and --format thesis do not go together: the thesis's files list single poses");
+    if (args.out.empty() && !args.heatmap.empty())
+        throw ArgumentError("--adaptive needs -o FILE if --heatmap is given: a picture shows all poses, not cells");
+}
+
 RasterOptions options_of(const RasterCommandArgs& args, const CLI::App& command)
 {
     RasterOptions options = raster_options(args, command);
@@ -41,6 +53,7 @@ RasterOptions options_of(const RasterCommandArgs& args, const CLI::App& command)
     options.step = parse_positive("--step", args.step);
     if (command.count("--step-z") > 0) options.step_z = parse_positive("--step-z", args.step_z);
     check_write_aerial(args, command, options);
+    check_adaptive(args);
     return options;
 }
 
@@ -67,6 +80,19 @@ Settings settings_of(const RasterCommandArgs& args, const Session& session, cons
     if (options.height_check) add("Max water depth (m)", number(limits.max_water_depth));
     if (options.height_check && std::isfinite(limits.max_slope)) add("Max slope (rad)", number(limits.max_slope));
     return out;
+}
+
+/// Writes the poses, or with --adaptive the cells.
+void write_table(const RasterCommandArgs& args, const RasterResult& result,
+                 const std::function<void(std::string_view)>& sink, Summary& summary)
+{
+    if (!args.adaptive) {
+        write_raster_csv(result, args.write_aerial, sink, args.threads);
+        return;
+    }
+    const std::vector<RasterCell> cells = raster_cells(result);
+    write_raster_cells_csv(result, cells, sink, args.threads);
+    summary.cells = cells.size();
 }
 
 Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summary& summary)
@@ -102,7 +128,7 @@ Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summar
         draw();
     else
         write_output(
-            args.out, [&](const auto& sink) { write_raster_csv(result, args.write_aerial, sink, args.threads); }, draw);
+            args.out, [&](const auto& sink) { write_table(args, result, sink, summary); }, draw);
     summary.set_verdicts(result.counts, result.exact_checks);
     return {};
 }
@@ -116,6 +142,9 @@ void add_raster(CLI::App& app, ChosenCommand& chosen)
     add_map_and_robot(command, *args);
     add_dims(command, *args)->required();
     command.add_option("--step", args->step, "Distance between columns, m")->required();
+    command.add_flag("--adaptive", args->adaptive,
+                     "2D: write square cells of columns with equal verdicts in place of poses: large ones in the open, "
+                     "down to --step near edges");
     command.add_option("--step-z", args->step_z, "3D: distance between heights, m (default: --step)");
     command.add_option("--out,-o", args->out,
                        "CSV file, or folder, to write (default: standard output, or nothing with --heatmap)");

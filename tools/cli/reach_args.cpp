@@ -5,6 +5,7 @@
 #include "spelling.h"
 
 #include <spawnfield/kept_graph.h>
+#include <spawnfield/room.h>
 
 #include <algorithm>
 #include <cmath>
@@ -235,13 +236,19 @@ void notice_about_islands(const QueryArgs& query, const IslandArgs& args, const 
 }
 
 ChosenIslands choose_islands(const QueryArgs& query, const IslandArgs& args, const IslandChoice& choice,
-                             const Session& session, Summary& summary, const std::string& command)
+                             const Session& session, Summary& summary, const std::string& command, bool needs_ways)
 {
-    if (choice.selects_all()) return {};
-    const ReachGraph graph = find_islands(query, args, session, summary, command);
+    if (choice.selects_all() && !needs_ways) return {};
+    const ReachGraph graph = find_islands(query, args, session, summary, command, needs_ways);
+    if (choice.selects_all()) return {.graph = graph};
     const std::vector<std::size_t> islands = chosen_islands(graph, *session.judge, choice);
     summary.extra.push_back(island_words(islands));
     return {graph, on_islands(graph, islands), islands.empty() ? why_none(choice, graph) : ""};
+}
+
+void set_room(PlaceMeasures& measures, const ChosenIslands& chosen)
+{
+    if (asks_for(measures, PlaceQuantity::Room)) measures.room = room_on(*chosen.graph, measures.room_range);
 }
 
 }  // namespace spawnfield::cli

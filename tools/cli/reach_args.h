@@ -58,9 +58,13 @@ struct ChosenIslands {
     std::string why_none = {};  ///< why no island was selected; empty if there is one, and without a filter
 };
 
-/// Finds the islands, selects some, and puts them into the summary. Does nothing if the choice selects all islands.
-/// Throws what chosen_islands() throws.
+/// Finds the islands, selects some, and puts them into the summary. Does nothing if the choice selects all islands,
+/// unless the graph is needed with its ways. Throws what chosen_islands() throws.
 ChosenIslands choose_islands(const QueryArgs& query, const IslandArgs& args, const IslandChoice& choice,
-                             const Session& session, Summary& summary, const std::string& command);
+                             const Session& session, Summary& summary, const std::string& command,
+                             bool needs_ways = false);
+
+/// Sets PlaceMeasures::room, if the measures ask for it. The graph must keep its ways.
+void set_room(PlaceMeasures& measures, const ChosenIslands& chosen);
 
 }  // namespace spawnfield::cli

@@ -342,7 +342,8 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
     const ZRange heights = heights_of(args.ground, options.bounds, "--region");
     const auto prepare = [&](const Session& session, SampleOptions& asked) {
         complete(asked, heights, args, command, session, summary);
-        islands = choice_for(session.map, args, args.islands, command, islands);
+        islands = choice_for(session.map, args, args.islands, command, islands,
+                             asks_for(asked.measures, PlaceQuantity::Room));
         Settings own{{"Layers", args.ground.layers}};
         if (asked.offset) own.insert(own.begin(), {"Offset (m)", number(*asked.offset)});
         if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
@@ -353,7 +354,9 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
     };
     const auto before_draws = [&](const Session& session, SampleOptions& asked) {
         if (asked.offset) return flat_ground_complaint(session.robot, *asked.offset);
-        const ChosenIslands chosen = choose_islands(args, args.islands, islands, session, summary, "sample");
+        const ChosenIslands chosen = choose_islands(args, args.islands, islands, session, summary, "sample",
+                                                    asks_for(asked.measures, PlaceQuantity::Room));
+        set_room(asked.measures, chosen);
         asked.is_reachable = chosen.filter;
         asked.reachable_name = words_of(islands);
         return chosen.why_none;
@@ -434,7 +437,9 @@ void add_sample(CLI::App& app, ChosenCommand& chosen)
     add_pairs(command, args->pairs);
     add_fleet(command, args->fleet);
     command.get_option("--robot")->required(false);  // not for --fleet
-    add_places(command, args->places);
+    add_place_rules(command, args->places);
+    add_quantity_settings(command, args->places);
+    add_measures(command, args->places);
     add_spawn_groups(command, *args);
     command.footer(
         "Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random\n"

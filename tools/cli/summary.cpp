@@ -76,7 +76,8 @@ std::string Summary::line(double total) const
         for (auto verdict = all_verdicts.rbegin(); verdict != all_verdicts.rend(); ++verdict)  // valid first
             if (const std::uint64_t count = (*counts_)[*verdict]; count > 0)
                 verdicts += (verdicts.empty() ? ": " : ", ") + std::to_string(count) + " " + to_string(*verdict);
-        text += verdicts + "; " + counted(exact_checks_, "exact check") + "; ";
+        text += verdicts + "; " + (cells ? counted(*cells, "cell") + "; " : "") +
+                counted(exact_checks_, "exact check") + "; ";
     }
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%.3f s", total);
@@ -97,6 +98,7 @@ std::string Summary::json(double total) const
         out["full"] = fullness->is_full;
         out["undecided_area"] = fullness->undecided_area;
     }
+    if (cells) out["cells"] = *cells;
     if (offset) out["offset"] = *offset;
     if (repairs)
         out["repairs"] = {

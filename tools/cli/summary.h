@@ -31,6 +31,7 @@ public:
     bool is_interrupted = false;                              ///< the result is a part of what was asked for
     ExactTime exact_time;                                     ///< for a query's options
     std::vector<std::string> extra;                           ///< further words, at the beginning of the line
+    std::optional<std::uint64_t> cells;                       ///< of an adaptive raster
     std::optional<double> offset;                             ///< m, of poses on layers
     std::vector<std::pair<std::string, double>> more_stages;  ///< of a bake: name and seconds
     struct Fullness {
