@@ -399,7 +399,7 @@ TEST_CASE("a convoy drives along the path that the robot finds around a wall")
     REQUIRE(fleet.robots.size() == 6);
     CHECK(fleet.robots[5].spawn.position.head<2>().isApprox(Eigen::Vector2d(-2, -2), 1e-6));
     CHECK(std::ranges::any_of(fleet.robots, [](const FleetRobot& robot) { return robot.spawn.position.y() > 1.5; }));
-    CHECK_THROWS_WITH(drivable_path(kind.judge, graph, {-2, -2, {}}, {0, -2, {}}), Contains("at none of the 16"));
+    CHECK_THROWS_WITH(drivable_path(kind.judge, graph, {-2, -2, {}}, {0, -2, {}}), Contains("at none of 16"));
     kind.count = 40;
     CHECK_THAT(place_fleet(std::span(&kind, 1), {}).kinds[0].why, Contains("40 robots need 39 m"));
 }
