@@ -65,7 +65,9 @@ struct ReachPlace {
 ///   is raised by max_step, if it can be raised by so much at both ends. Each convex part of it covers the convex hull
 ///   of the part at both poses. If the heading changes, or if roll or pitch change by more than 0.1 rad, the way has
 ///   four such pieces; z, roll and pitch change evenly. If these hulls meet something, and the robot tilts, it has so
-///   many pieces that no point of the robot moves by more than 1 cm in a piece because it tilts.
+///   many pieces that no point of the robot moves by more than 1 cm in a piece because it tilts. If that is not enough
+///   on a straight way, the robot is also let down at three places between its ends; then each quarter of the way must
+///   comply with these rules, and the last one must lead to the same layer.
 ///
 /// If a column has several layers with a state at the heading, a way leads to the one with the smallest step.
 ///

@@ -26,8 +26,8 @@ inline constexpr std::array<std::uint32_t, 6> island_palette{0xbdd5a7, 0x033cd9,
 inline constexpr std::uint32_t other_islands_colour = 0x371d4a, no_way_colour = 0xc99102, not_valid_colour = 0x9a9a9a;
 
 /// The colours of spawns in a picture, by the kind of the robot: the first seven kinds, then all others together. They
-/// differ by at least 11 (CIEDE2000) from each other and from the colours of valid ground and obstacles. Spawns have a
-/// white rim, so that they can be told from ground with another meaning of the same colour.
+/// differ by at least 11 (CIEDE2000) from each other and from the colours of valid ground and obstacles. Some are
+/// also colours of verdicts; the white rim of a spawn shows that it is not ground.
 inline constexpr std::array<std::uint32_t, 8> kind_palette{0xffffff, 0x033cd9, 0xfff516, 0xa54c31,
                                                            0x4eedff, 0x9182ff, 0xc99102, 0x371d4a};
 inline constexpr std::uint32_t start_colour = kind_palette[0], goal_colour = kind_palette[2],

@@ -16,7 +16,7 @@ Vec2 vector_of(const LatticeMove& move) { return {double(move.cols), double(move
 /// The shapes of all ways are among those that begin at the headings 0 to 2. They are counted as in shape_way().
 std::uint8_t shape_of(Way way, int heading)
 {
-    if (way == Way::Left || way == Way::Right) {
+    if (is_curve(way)) {
         const int between = way == Way::Left ? heading : lattice_heading(heading, -1);  // this heading and the next one
         return between % 4 == 0 || between % 4 == 3 ? 3 : 4;
     }

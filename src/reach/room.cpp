@@ -74,7 +74,7 @@ std::vector<std::uint32_t> places_of_groups(const PathGraph& graph)
     const std::vector<HeadingSet>& valid = graph.graph().valid;
     for (std::size_t place = 0; place < valid.size(); ++place)
         for (int heading = 0; heading < lattice_headings; ++heading)
-            if ((valid[place] >> heading & 1u) != 0)
+            if (has_heading(valid[place], heading))
                 out[graph.group_of(PathGraph::StateId(place) * lattice_headings + PathGraph::StateId(heading))] =
                     std::uint32_t(place);
     return out;
