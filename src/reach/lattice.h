@@ -27,17 +27,35 @@ constexpr int lattice_heading(int heading, int more) { return (heading + more + 
 /// Returns the way straight ahead at a heading, 0 .. 15. Heading 0 is along x; they are counted counterclockwise.
 constexpr LatticeMove lattice_move(int heading)
 {
-    constexpr std::array<LatticeMove, 4> quarter{{{1, 0}, {2, 1}, {1, 1}, {1, 2}}};
-    LatticeMove out = quarter[std::size_t(heading % 4)];
-    for (int turn = 0; turn < heading / 4; ++turn) out = {-out.rows, out.cols};
-    return out;
+    constexpr std::array<LatticeMove, lattice_headings> moves{{{1, 0},
+                                                               {2, 1},
+                                                               {1, 1},
+                                                               {1, 2},
+                                                               {0, 1},
+                                                               {-1, 2},
+                                                               {-1, 1},
+                                                               {-2, 1},
+                                                               {-1, 0},
+                                                               {-2, -1},
+                                                               {-1, -1},
+                                                               {-1, -2},
+                                                               {0, -1},
+                                                               {1, -2},
+                                                               {1, -1},
+                                                               {2, -1}}};
+    return moves[std::size_t(heading)];
 }
 
 /// Returns the yaw of a heading, -pi < yaw <= pi, rad.
 inline double lattice_yaw(int heading)
 {
-    const LatticeMove move = lattice_move(heading);
-    return std::atan2(double(move.rows), double(move.cols));
+    static const auto yaws = [] {
+        std::array<double, lattice_headings> out{};
+        for (int k = 0; k < lattice_headings; ++k)
+            out[std::size_t(k)] = std::atan2(double(lattice_move(k).rows), double(lattice_move(k).cols));
+        return out;
+    }();
+    return yaws[std::size_t(heading)];
 }
 
 constexpr int to_the_left(int heading) { return lattice_heading(heading, lattice_headings / 4); }
@@ -83,19 +101,25 @@ public:
     /// from there.
     explicit Lattice(double turning_radius = 0);
 
-    const WayEnd& end(Way way, int heading) const { return ends_[std::size_t(way)][std::size_t(heading)]; }
+    const WayEnd& end(Way way, int heading) const { return shape(way, heading).end; }
     /// Returns the way from a column to the corner of a curve.
-    LatticeMove corner(Way way, int heading) const;
-    Curve curve(Way way, int heading) const;         ///< lengths in steps of the grid
-    double length(Way way, int heading) const;       ///< seen from above, in steps of the grid
+    LatticeMove corner(Way way, int heading) const { return shape(way, heading).corner; }
+    const Curve& curve(Way way, int heading) const { return shape(way, heading).curve; }  ///< in steps of the grid
+    double length(Way way, int heading) const { return shape(way, heading).length; }      ///< as seen from above, steps
     double longest() const { return longest_; }      ///< largest distance between the ends of a way, steps of the grid
     int longest_rows() const { return most_rows_; }  ///< largest number of rows that a way leads up or down
 
 private:
-    int moves(int heading, int other) const;
+    struct Shape {
+        WayEnd end{};
+        LatticeMove corner{};  ///< of a curve
+        Curve curve{};         ///< the same
+        double length = 0;     ///< in steps of the grid
+    };
+    const Shape& shape(Way way, int heading) const { return shapes_[std::size_t(way)][std::size_t(heading)]; }
+    static Shape shape_of(Way way, int heading, double turning_radius);
 
-    double turning_radius_;
-    std::array<std::array<WayEnd, lattice_headings>, way_count> ends_;
+    std::array<std::array<Shape, lattice_headings>, way_count> shapes_;
     double longest_ = 0;
     int most_rows_ = 0;
 };

@@ -63,6 +63,9 @@ WayJudge::WayJudge(const Judge::Impl& shared, double max_step, const Lattice& la
       radius_(shared.settler().reach()), steepest_(std::tan(shared.options.stand.max_slope)), stand_(shared),
       columns_(shared, 0), level_(shared), sweep_(shared.map.geometry, shared.robot)
 {
+    for (const Way way : all_ways)
+        for (int heading = 0; heading < lattice_headings; ++heading)
+            rises_[std::size_t(way)][std::size_t(heading)] = rise_of(way, heading);
 }
 
 Course WayJudge::course_of(const StateAt& from, const StateAt& to, Way way) const
@@ -136,7 +139,7 @@ std::optional<std::size_t> WayJudge::place_ahead(const Vec2& from, const PlaceSt
                        [&](const PlaceStates& other) { return slope_at(to, other, opposite(direction)); });
 }
 
-double WayJudge::largest_rise(Way way, int heading) const
+double WayJudge::rise_of(Way way, int heading) const
 {
     // The two straight ways of a curve are longer than the straight line between its ends. A curve of a car has more
     // pieces than two only if it is longer than two steps.

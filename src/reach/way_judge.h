@@ -69,7 +69,7 @@ public:
     void find_places(const Vec2& at, std::vector<PlaceStates>& out);
 
     /// Returns how much the ground may rise on a way, m.
-    double largest_rise(Way way, int heading) const;
+    double largest_rise(Way way, int heading) const { return rises_[std::size_t(way)][std::size_t(heading)]; }
 
     /// Returns the index, in the next column `to` in the direction of a heading, of the place with the smallest step
     /// from this one; it has a state at `at_heading`. Returns nothing if all steps are larger than max_step.
@@ -117,6 +117,7 @@ private:
     double slope_at(const Vec2& at, const PlaceStates& place, int heading);
     double slope_at(const Vec2& at, double ground, const Vec2& ahead);
     bool is_proven(const ColumnView& column, const Vec3& place);
+    double rise_of(Way way, int heading) const;
     void set_start(const Vec2& at);
     StatePose exact_pose(const StateAt& state);
     StatePose settled(const Vec2& at, double ground, int heading);
@@ -132,6 +133,7 @@ private:
     const double max_step_, step_, longest_way_;
     const double radius_;    ///< distance of the robot's farthest point from its origin, m
     const double steepest_;  ///< slope on which it may stand
+    std::array<std::array<double, lattice_headings>, way_count> rises_{};  ///< see largest_rise()
     StandJudge stand_;
     PoseJudge columns_;
     LevelGround level_;
