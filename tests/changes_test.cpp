@@ -314,7 +314,7 @@ TEST_CASE("changes that cannot be made are refused")
     CHECK_THROWS_WITH(without_parts(map, {"nothing*"}),
                       Contains("\"nothing*\" matches no part of the map; there are floor, "));
     const Map less = without_parts(map, {"floor"});
-    CHECK_THROWS_WITH(matching_parts(less.geometry, {"floor"}, "on"), Contains("on \"floor\" matches no part"));
+    CHECK_THROWS_WITH(selection_of(less.geometry, {"floor"}, "on"), Contains("on \"floor\" matches no part"));
     Scene twice;
     add_shape(twice, "floor", Label::Obstacle, {ShapeKind::Box, {1, 1, 1}, {}});
     CHECK_THROWS_WITH(with_parts(map, twice), Contains("part \"floor\" exists in the map already"));

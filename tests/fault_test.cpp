@@ -391,7 +391,7 @@ TEST_CASE("a map folder that is cut short, altered, newer or not a map is refuse
           "spawnfield");
     folder.write("map/map.yaml", "image: map.pgm\n");
     CHECK(read() ==
-          "@/map/map.yaml: is not a map.yaml of spawnfield (its first line is not `format: spawnfield-map/6`)");
+          "@/map/map.yaml: is not a map.yaml of spawnfield (its first line is not `format: spawnfield-map/7`)");
     fs::remove(map / "map.yaml");
     CHECK(read() == "@/map: is not a map: it has no map.yaml; make a map with `spawnfield bake SCENE -o MAP`");
     CHECK(complaint(folder, [&] { read_map(folder / "none"); }) == "@/none: does not exist; is the path right?");

@@ -3,6 +3,7 @@
 
 #include "query/parts_near.h"
 #include "query/sight.h"
+#include "scene/mesh.h"
 #include "settle/convex_distance.h"
 
 #include <spawnfield/robot_parts.h>
@@ -78,6 +79,16 @@ Shape random_shape(Random& random, const Vec3& at)
     return {kind, {length(), length(), length()}, {at, rotation}};
 }
 
+/// Returns a mesh of one node: level ground, road where x < 0, and sidewalk where x > 0.
+FileMesh road_and_sidewalk()
+{
+    return {.nodes = {{.name = "town",
+                       .vertices = {{-6, -2, 0}, {0, -2, 0}, {6, -2, 0}, {-6, 2, 0}, {0, 2, 0}, {6, 2, 0}},
+                       .triangles = {{0, 1, 4}, {1, 2, 5}, {0, 4, 3}, {1, 5, 4}},
+                       .materials = {0, 1, 0, 1}}},
+            .materials = {"road", "sidewalk"}};
+}
+
 Vec3 random_direction(Random& random)
 {
     const double z = random.between(-1, 1), turn = random.between(0, 2 * std::numbers::pi), r = std::sqrt(1 - z * z);
@@ -128,12 +139,19 @@ TEST_CASE("the way to some parts is the shortest to all of their triangles and s
 {
     std::size_t found = 0, none = 0;
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-        const Scene scene = random_scene(seed);
+        Scene scene = random_scene(seed);
+        Random random(seed);
+        for (std::uint32_t part = 0; part < scene.parts.size(); ++part)  // two face groups of each part
+            for (int k = 0; k < 2; ++k) scene.face_groups.push_back({part, "", "", {}, 0, 0});
+        for (const std::uint32_t piece : scene.triangle_pieces)
+            scene.triangle_groups.push_back(
+                random.between(0, 1) < 0.2 ? 0 : 2 * scene.pieces[piece].part + (random.between(0, 1) < 0.5 ? 1 : 2));
         const Geometry geometry(scene);
         const Robot robot = random_robot(seed);
-        Random random(seed);
-        PartFlags parts(scene.parts.size());
-        for (std::uint8_t& flag : parts) flag = random.between(0, 1) < 0.3;
+        Selection parts{std::vector<std::uint8_t>(scene.parts.size()),
+                        std::vector<std::uint8_t>(scene.face_groups.size())};
+        for (std::uint8_t& flag : parts.parts) flag = random.between(0, 1) < 0.2;
+        for (std::uint8_t& flag : parts.groups) flag = random.between(0, 1) < 0.2;
         const PartsNear near(geometry, parts);
         for (const Pose& pose : random_poses(scene, seed, 40)) {
             std::vector<Convex> bodies, solids;
@@ -141,13 +159,14 @@ TEST_CASE("the way to some parts is the shortest to all of their triangles and s
                 bodies.push_back(moved(convex_of(part), {Vec3::Zero(), pose.rotation}));
             const Pose back{-pose.position, Mat3::Identity()};
             for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
-                if (parts[scene.pieces[scene.triangle_pieces[t]].part] == 0) continue;
+                const std::uint32_t part = scene.pieces[scene.triangle_pieces[t]].part;
+                if (!parts.contains(part, scene.triangle_groups[t])) continue;
                 const auto& [i, j, k] = scene.triangles[t];
                 solids.push_back(
                     moved(convex_of(std::array{scene.vertices[i], scene.vertices[j], scene.vertices[k]}), back));
             }
             for (const Primitive& primitive : scene.primitives)
-                if (parts[primitive.part] != 0) solids.push_back(moved(convex_of(primitive.shape), back));
+                if (parts.parts[primitive.part] != 0) solids.push_back(moved(convex_of(primitive.shape), back));
             double least = infinite;
             for (const Convex& body : bodies)
                 for (const Convex& solid : solids) least = std::min(least, shortest_way(body, solid).norm());
@@ -297,11 +316,16 @@ TEST_CASE("spawns face the nearest point of the parts")
     }
 }
 
-TEST_CASE("spawns stand on some parts, or not on some parts")
+TEST_CASE("spawns stand on some parts or materials, or not on some")
 {
     Scene scene;
-    add_shape(scene, "road", Label::Terrain, box_shape({6, 4, 0.2}, {{-3, 0, -0.1}}));
-    add_shape(scene, "sidewalk", Label::Terrain, box_shape({6, 4, 0.2}, {{3, 0, -0.1}}));
+    if (GENERATE(false, true)) {
+        scene.parts.push_back({.name = "ground", .kind = "mesh", .label = Label::Terrain});
+        append_mesh(scene, 0, road_and_sidewalk(), {});
+    } else {
+        add_shape(scene, "road", Label::Terrain, box_shape({6, 4, 0.2}, {{-3, 0, -0.1}}));
+        add_shape(scene, "sidewalk", Label::Terrain, box_shape({6, 4, 0.2}, {{3, 0, -0.1}}));
+    }
     const Judge judge(map_of(std::move(scene)), box_robot());
     const auto least_x = [&](const PlaceRules& rules, Stance stance) {
         SampleOptions options = options_with(rules, 1000);
@@ -324,6 +348,53 @@ TEST_CASE("spawns stand on some parts, or not on some parts")
             CHECK(least < 0.05);
         }
     CHECK(least_x({.on = {"side*", "road"}}, Stance::Settled) < -5);
+}
+
+TEST_CASE("nodes and materials of a mesh file can be selected, also in a changed map, and info lists them")
+{
+    const Arena arena;
+    arena.write("town.mtl", "newmtl road\nnewmtl sidewalk\nnewmtl oak\n");
+    arena.write("town.obj",
+                "mtllib town.mtl\no ground\nv -6 -2 0\nv 0 -2 0\nv 6 -2 0\nv -6 2 0\nv 0 2 0\nv 6 2 0\n"
+                "usemtl road\nf 1 2 5 4\nusemtl sidewalk\nf 2 3 6 5\n"
+                "o tree_1\nv 3 0 0\nv 3 0.1 0\nv 3 0 2\nusemtl oak\nf 7 8 9\n");
+    arena.write("scene.yaml",
+                "format: spawnfield-scene/1\nname: town\nparts:\n- {name: plate, label: terrain, "
+                "box: [1, 1, 0.1], xyz: [0, 0, -2]}\n- {name: town, label: terrain, mesh: "
+                "town.obj, up: z, labels: [{node: 'tree*', label: obstacle}]}\n");
+    REQUIRE(arena("bake scene.yaml -o town").status == 0);
+    const ProgramRun info = arena("info town");
+    CHECK_THAT(info.out, Contains("names in meshes, for rules of place such as --on\n") &&
+                             Contains("node \"ground\", material \"road\": 2 triangles, z 0 to 0 m, terrain\n"));
+    const auto spawns = [&](const std::string& rules) {
+        const ProgramRun run = arena("sample town --robot box:0.4,0.4,0.2 -n 200 --yaw random" + rules);
+        CHECK(run.status == 0);
+        std::vector<Point> out;
+        std::istringstream text(run.out);
+        std::string line;
+        for (std::getline(text, line); std::getline(text, line);) {
+            Point& point = out.emplace_back();
+            CHECK(std::sscanf(line.c_str(), "%lf,%lf", &point.x(), &point.y()) == 2);
+        }
+        CHECK(out.size() == 200);
+        return out;
+    };
+    for (const Point& at : spawns(" --on SIDE*")) CHECK(at.x() > 0.2 - 1e-6);
+    for (const Point& at : spawns(" --not-on sidewalk")) CHECK(at.x() < -0.2 + 1e-6);
+    for (const Point& at : spawns(" --near 'tree_?' 0.5:0.6")) CHECK(std::abs((at - Point(3, 0)).norm() - 0.7) < 0.25);
+    for (const Point& at : spawns(" --on oa? --on road --on 'side*' --near oak :1")) CHECK(at.x() > 1);
+    // In a map with another mesh and without the first part, the numbers of the face groups are still right.
+    arena.write("more.yaml",
+                "format: spawnfield-scene/1\nname: more\nparts:\n- {name: north, label: terrain, mesh: "
+                "town.obj, up: z, xyz: [0, 4, 0], labels: [{node: 'tree*', label: obstacle}]}\n");
+    for (const Point& at : spawns(" --with more.yaml --without plate --on sidewalk")) CHECK(at.x() > 0.2 - 1e-6);
+    bool is_north = false;
+    for (const Point& at : spawns(" --with more.yaml --near tree_1 0:0.6")) is_north |= at.y() > 3;
+    CHECK(is_north);
+    const ProgramRun none = arena("sample town --robot box:0.4,0.4,0.2 -n 1 --on lawn");
+    CHECK(none.status == 2);
+    CHECK_THAT(none.err, Contains("--on \"lawn\" matches no part of the map, and no node or material of its meshes; "
+                                  "there are the parts plate, town and the names ground, road, sidewalk, tree_1, oak"));
 }
 
 TEST_CASE("spawns keep a distance from a point, are in its view, or hidden from it")

@@ -24,6 +24,9 @@ public:
     /// Of the scene, in the scene's order. Removed parts (changes.h) keep their place, with all counts 0.
     const std::vector<Part>& parts() const;
     bool is_removed(std::size_t part) const;
+    /// Of the scene's meshes. Those of removed parts keep their place; those of added parts follow. Empty for maps of a
+    /// version before 7.
+    const std::vector<FaceGroup>& face_groups() const;
     const LabelCounts& labels() const;
 
     struct Impl;
@@ -33,5 +36,9 @@ public:
 private:
     std::shared_ptr<const Impl> impl_;
 };
+
+/// Returns the parts whose name, or a word of it between "::", matches a shell glob (POSIX fnmatch, ignoring case).
+/// Removed parts match nothing. Empty if there is none.
+SPAWNFIELD_API std::vector<std::size_t> parts_that_match(const Geometry& geometry, const std::string& glob);
 
 }  // namespace spawnfield

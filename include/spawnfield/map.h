@@ -16,7 +16,7 @@ namespace spawnfield {
 /// triangles. Version 4 stores less in bounds.bin: a tile whose cells are all the same only once, and an interval list
 /// that cells share only once. Version 3 added z_limits and floors. A map of version 2 has no z limits, and its floors
 /// are computed from terrain.tiff.
-inline constexpr int map_format_version = 6;
+inline constexpr int map_format_version = 7;
 
 struct MapChange;  // of a changed map: what differs from the map before
 

@@ -9,9 +9,9 @@
 namespace spawnfield {
 
 /// What spawns must comply with besides being valid: their relation to parts of the scene and to points. All rules must
-/// hold for the pose that is written. Parts are selected by globs; see matching_parts() and docs/places.md.
+/// hold for the pose that is written. Parts and faces are selected by globs; see selection_of() and docs/places.md.
 struct PlaceRules {
-    /// Nearness to parts: the shortest distance in 3D between the robot and the solids of all matching parts.
+    /// Nearness to parts: the shortest distance in 3D between the robot and all matching parts and faces.
     struct Near {
         std::string parts;         ///< glob
         double low = 0, high = 0;  ///< m, inclusive, 0 <= low <= high; high may be infinite
@@ -24,8 +24,9 @@ struct PlaceRules {
 
     /// m, 0 .. 10: the shortest horizontal shift with which the robot touches an obstacle is at least this long.
     double clearance = 0;
-    /// Globs of the parts on which the robot stands. Settled: all contacts are with parts that match one of `on`, and
-    /// none with a part that matches one of `not_on`. Level: the same for the ground below the origin.
+    /// Globs of the parts and faces on which the robot stands. Settled: all contacts are with those that match one of
+    /// `on`, and none with those that match one of `not_on`. Level: the same for the ground below the origin. On the
+    /// edge between two face groups, the robot stands on both.
     std::vector<std::string> on = {}, not_on = {};
     std::vector<Near> near = {};
     std::vector<Distance> distance_to = {};
@@ -45,13 +46,23 @@ struct PlaceRules {
     }
 };
 
-/// A flag for each part of a scene: 1 if it is selected.
-using PartFlags = std::vector<std::uint8_t>;
+/// What is selected of a scene: whole parts, and face groups of other parts.
+struct Selection {
+    std::vector<std::uint8_t> parts;   ///< for each part, 1 if all of it is selected, else 0
+    std::vector<std::uint8_t> groups;  ///< the same for each of Geometry::face_groups()
 
-/// Returns the parts whose name, or a word of it between "::", matches one of the globs, ignoring case. Throws
-/// ArgumentError for a glob that matches nothing; the message begins with `rule` and lists some names.
-SPAWNFIELD_API PartFlags matching_parts(const Geometry& geometry, const std::vector<std::string>& globs,
-                                        const std::string& rule);
+    /// Returns whether an element is selected; `group` is as in Scene::triangle_groups.
+    bool contains(std::uint32_t part, std::uint32_t group) const
+    {
+        return parts[part] != 0 || (group > 0 && groups[group - 1] != 0);
+    }
+};
+
+/// Returns the parts whose name, or a word of it between "::", matches one of the globs, ignoring case, and the face
+/// groups whose node or material does. Throws ArgumentError for a glob that matches nothing; the message begins with
+/// `rule` and lists some names.
+SPAWNFIELD_API Selection selection_of(const Geometry& geometry, const std::vector<std::string>& globs,
+                                      const std::string& rule);
 
 /// Returns the rules as in the options of `sample`, for people: "near shelf* 0.5:1 m, not on road*"; may be empty.
 SPAWNFIELD_API std::string to_string(const PlaceRules& rules);

@@ -84,8 +84,11 @@ struct Scene {
     std::vector<std::string> notices;    ///< for the user: for example, defaults that influenced the scene
     std::vector<NameRule> rules;         ///< the rules that labelled an SDF or URDF world, in their order
     std::vector<FaceGroup> face_groups;  ///< of all meshes, part after part, in the order of their files
-    bool is_unlabelled = false;          ///< no label was given, so everything became terrain
-    bool has_moving_parts = false;       ///< a part has a `path`
+    /// The face group of each triangle: 1 + its index in face_groups; 0: none. May be shorter than `triangles`; those
+    /// behind its end have none.
+    std::vector<std::uint32_t> triangle_groups = {};
+    bool is_unlabelled = false;     ///< no label was given, so everything became terrain
+    bool has_moving_parts = false;  ///< a part has a `path`
     /// The bounds of a map of this scene, unless the caller chooses others; empty: those of the whole scene. Infinite
     /// planes extend beyond them.
     Bounds map_bounds = {};

@@ -89,6 +89,10 @@ void add(const Scene& scene, int threads, Geometry::Impl& to, std::vector<Elemen
     to.elements += element_count(scene);
     add_to(to.bounds, scene.bounds());
     to.parts.insert(to.parts.end(), scene.parts.begin(), scene.parts.end());
+    for (FaceGroup group : scene.face_groups) {
+        group.part += to.next.part;
+        to.face_groups.push_back(std::move(group));
+    }
     const LabelCounts labels = scene.count_labels();
     for (std::size_t label = 0; label < labels.size(); ++label) {
         to.labels[label].triangles += labels[label].triangles;
@@ -96,7 +100,8 @@ void add(const Scene& scene, int threads, Geometry::Impl& to, std::vector<Elemen
     }
     to.has_filled_meshes |= has_filled_meshes(scene);
     to.next = {to.next.element + std::uint32_t(element_count(scene)),
-               to.next.piece + std::uint32_t(scene.pieces.size()), std::uint32_t(to.parts.size())};
+               to.next.piece + std::uint32_t(scene.pieces.size()), std::uint32_t(to.parts.size()),
+               std::uint32_t(to.face_groups.size())};
     if (!to.is_removed.empty()) to.is_removed.resize(to.parts.size());
 }
 

@@ -65,12 +65,13 @@ std::uint64_t Geometry::element_count() const { return impl_->elements; }
 const Bounds& Geometry::bounds() const { return impl_->bounds; }
 const std::vector<Part>& Geometry::parts() const { return impl_->parts; }
 bool Geometry::is_removed(std::size_t part) const { return !impl_->is_removed.empty() && impl_->is_removed[part] != 0; }
+const std::vector<FaceGroup>& Geometry::face_groups() const { return impl_->face_groups; }
 const LabelCounts& Geometry::labels() const { return impl_->labels; }
 
 std::shared_ptr<const Forest> forest_of(const Scene& scene, const ElementNumbers& first, int threads)
 {
     auto out = std::make_shared<Forest>();
-    out->parts = first.part + scene.parts.size();
+    out->limits = {first.part + scene.parts.size(), first.group + scene.face_groups.size()};
     const std::size_t elements = element_count(scene);
     if (elements == 0) return out;
     std::vector<ElementBox> boxes(elements);
@@ -100,10 +101,12 @@ Geometry::Geometry(const Scene& scene, int threads)
     auto impl = std::make_shared<Impl>();
     impl->elements = spawnfield::element_count(scene);
     impl->parts = scene.parts;
+    impl->face_groups = scene.face_groups;
     impl->labels = scene.count_labels();
     impl->has_filled_meshes = has_filled_meshes(scene);
     if (impl->elements > 0) impl->bounds = scene.bounds();
-    impl->next = {std::uint32_t(impl->elements), std::uint32_t(scene.pieces.size()), std::uint32_t(scene.parts.size())};
+    impl->next = {std::uint32_t(impl->elements), std::uint32_t(scene.pieces.size()), std::uint32_t(scene.parts.size()),
+                  std::uint32_t(scene.face_groups.size())};
     parallel_for(2, threads, {}, [&](std::size_t task) {
         if (task == 0)
             impl->forests = {forest_of(scene, {}, threads)};

@@ -14,12 +14,12 @@ namespace spawnfield {
 struct Forest {
     TileStore tiles;
     std::vector<TileTree> trees;
-    std::size_t parts = 0;  ///< numbers of parts in the tiles are below this
+    TileLimits limits;  ///< of the numbers in the tiles
 
     /// Returns the bytes of a tile. Throws FileError for a damaged tile of a file.
     std::string_view bytes_of(std::size_t tree, std::size_t tile) const
     {
-        return tiles.open(tree, tile, [this](std::string_view bytes) { return is_consistent_tile(bytes, parts); });
+        return tiles.open(tree, tile, [this](std::string_view bytes) { return is_consistent_tile(bytes, limits); });
     }
 };
 
@@ -30,6 +30,7 @@ struct Geometry::Impl {
     Bounds bounds;               ///< of all elements
     /// Of the scene, in its order. Removed parts keep their place, with all counts 0; added parts follow.
     std::vector<Part> parts;
+    std::vector<FaceGroup> face_groups;  ///< see Geometry::face_groups()
     LabelCounts labels{};
     std::vector<std::uint64_t> part_hashes;  ///< for each part; empty for a changed scene or an old map
     bool has_filled_meshes = false;

@@ -5,7 +5,7 @@
 namespace spawnfield {
 namespace {
 
-bool matches_part(const std::string& glob, const std::string& name)
+bool matches_name(const std::string& glob, const std::string& name)
 {
     if (matches(glob, name)) return true;
     if (name.find("::") == std::string::npos) return false;
@@ -23,7 +23,18 @@ std::vector<std::size_t> parts_that_match(const Geometry& geometry, const std::s
 {
     std::vector<std::size_t> out;
     for (std::size_t part = 0; part < geometry.parts().size(); ++part)
-        if (!geometry.is_removed(part) && matches_part(glob, geometry.parts()[part].name)) out.push_back(part);
+        if (!geometry.is_removed(part) && matches_name(glob, geometry.parts()[part].name)) out.push_back(part);
+    return out;
+}
+
+std::vector<std::size_t> face_groups_that_match(const Geometry& geometry, const std::string& glob)
+{
+    std::vector<std::size_t> out;
+    for (std::size_t k = 0; k < geometry.face_groups().size(); ++k) {
+        const FaceGroup& group = geometry.face_groups()[k];
+        const auto matches = [&](const std::string& name) { return !name.empty() && matches_name(glob, name); };
+        if (!geometry.is_removed(group.part) && (matches(group.node) || matches(group.material))) out.push_back(k);
+    }
     return out;
 }
 

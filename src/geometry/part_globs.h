@@ -7,9 +7,9 @@
 
 namespace spawnfield {
 
-/// Returns the parts that match a shell glob with their whole name or with one of its words between "::". Removed parts
-/// match nothing. Empty if there is none.
-std::vector<std::size_t> parts_that_match(const Geometry& geometry, const std::string& glob);
+/// Returns the face groups, as indices in Geometry::face_groups(), whose node or material matches a shell glob as names
+/// of parts do. Groups of removed parts match nothing.
+std::vector<std::size_t> face_groups_that_match(const Geometry& geometry, const std::string& glob);
 
 /// Returns the text of an error: a glob matches no part.
 std::string no_part_matches(const Geometry& geometry, const std::string& glob);

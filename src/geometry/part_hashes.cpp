@@ -2,6 +2,7 @@
 
 #include "base/binary.h"
 #include "base/parallel.h"
+#include "scene/elements.h"
 
 #include <xxhash.h>
 
@@ -30,8 +31,8 @@ void put_numbers(BinaryWriter& out, const Numbers& numbers)
 }
 
 /// A vertex counts by its coordinates and by its number from the piece's first one, because tiles list their vertices
-/// in the order of the numbers.
-void add_piece(const Scene& scene, const Piece& piece, Hasher& hasher)
+/// in the order of the numbers. A face group counts by its number from the part's first one.
+void add_piece(const Scene& scene, const Piece& piece, std::uint32_t first_group, Hasher& hasher)
 {
     constexpr std::uint32_t batch = 512;  // triangles whose bytes are hashed at a time
     BinaryWriter head;
@@ -50,6 +51,8 @@ void add_piece(const Scene& scene, const Piece& piece, Hasher& hasher)
                 put_numbers(bytes, scene.vertices[corner]);
             }
             bytes.put(std::uint8_t(scene.triangle_labels[t]));
+            const std::uint32_t group = face_group(scene, t);
+            bytes.put(group == 0 ? group : group - first_group);
         }
         hasher.add(bytes.take());
     }
@@ -63,6 +66,15 @@ void add_primitive(const Primitive& primitive, Hasher& hasher)
     put_numbers(bytes, primitive.shape.size);
     put_numbers(bytes, primitive.shape.pose.position);
     put_numbers(bytes, primitive.shape.pose.rotation);
+    hasher.add(bytes.take());
+}
+
+void add_group(const FaceGroup& group, Hasher& hasher)
+{
+    BinaryWriter bytes;
+    bytes.put_text(group.node);
+    bytes.put_text(group.material);
+    for (const std::uint64_t count : group.triangles) bytes.put(count);
     hasher.add(bytes.take());
 }
 
@@ -85,11 +97,16 @@ std::vector<std::uint64_t> hashes_of_parts(const Scene& scene, int threads)
     std::vector<std::vector<const Primitive*>> primitives(scene.parts.size());
     for (const Piece& piece : scene.pieces) pieces[piece.part].push_back(&piece);
     for (const Primitive& primitive : scene.primitives) primitives[primitive.part].push_back(&primitive);
+    std::vector<std::vector<std::uint32_t>> groups(scene.parts.size());
+    for (std::uint32_t group = 0; group < scene.face_groups.size(); ++group)
+        groups[scene.face_groups[group].part].push_back(group);
     std::vector<std::uint64_t> out(scene.parts.size());
     parallel_for(out.size(), threads, {}, [&](std::size_t part) {
         Hasher hasher;
         add_part(scene.parts[part], hasher);
-        for (const Piece* piece : pieces[part]) add_piece(scene, *piece, hasher);
+        for (const std::uint32_t group : groups[part]) add_group(scene.face_groups[group], hasher);
+        const std::uint32_t first_group = groups[part].empty() ? 0 : groups[part].front();
+        for (const Piece* piece : pieces[part]) add_piece(scene, *piece, first_group, hasher);
         for (const Primitive* primitive : primitives[part]) add_primitive(*primitive, hasher);
         out[part] = hasher.hash();
     });

@@ -5,6 +5,7 @@
 #include "scene/elements.h"
 
 #include <bit>
+#include <compare>
 #include <functional>
 
 namespace spawnfield {
@@ -58,6 +59,13 @@ private:
     std::array<std::uint64_t, most / 64> bits_;
 };
 
+/// A piece and one of its face groups, as in Scene::triangle_groups.
+struct PieceGroup {
+    std::uint32_t piece, group;
+
+    auto operator<=>(const PieceGroup&) const = default;
+};
+
 /// Builds the bytes of one tile.
 class TileBuilder {
 public:
@@ -88,7 +96,7 @@ public:
         put(numbers);
         for (const std::uint32_t vertex : vertices_) put(scene_.vertices[vertex]);
         for (std::size_t e = triangles_; e < elements_.size(); ++e) put(packed_primitive(elements_[e]));
-        for (const std::uint32_t piece : pieces_) put(packed_piece(piece));
+        for (const PieceGroup& piece : pieces_) put(packed_piece(piece));
         for (const std::uint32_t element : elements_) put(first_.element + element);
         for (std::size_t e = 0; e < triangles_; ++e) put(packed_triangle(e));
         return std::move(out_);
@@ -101,13 +109,29 @@ private:
         triangles_ = std::size_t(std::partition_point(elements_.begin(), elements_.end(),
                                                       [&](std::uint32_t e) { return is_triangle(scene_, e); }) -
                                  elements_.begin());
-        std::vector<std::uint32_t> corners, pieces;
+        std::vector<std::uint32_t> corners;
+        std::vector<PieceGroup> pieces;
         for (std::size_t e = 0; e < triangles_; ++e) {
             for (const std::uint32_t corner : scene_.triangles[elements_[e]]) corners.push_back(corner);
-            pieces.push_back(scene_.triangle_pieces[elements_[e]]);
+            pieces.push_back({scene_.triangle_pieces[elements_[e]], face_group(scene_, elements_[e])});
         }
         vertices_ = distinct(corners, corner_numbers_);
         pieces_ = distinct(pieces, piece_numbers_);
+    }
+
+    /// Returns the distinct values, ascending. numbers[k] becomes the place of values[k] among them. There are at most
+    /// TileBoxes::most values.
+    static std::vector<PieceGroup> distinct(const std::vector<PieceGroup>& values, std::vector<std::uint8_t>& numbers)
+    {
+        numbers.assign(values.size(), 0);
+        const bool all_equal = std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end();
+        if (all_equal && !values.empty()) return {values.front()};  // most often
+        std::vector<PieceGroup> out = values;
+        std::sort(out.begin(), out.end());
+        out.erase(std::unique(out.begin(), out.end()), out.end());
+        for (std::size_t k = 0; k < values.size(); ++k)
+            numbers[k] = std::uint8_t(std::lower_bound(out.begin(), out.end(), values[k]) - out.begin());
+        return out;
     }
 
     /// Returns the distinct values, ascending. numbers[k] becomes the place of values[k] among them. There are at most
@@ -116,8 +140,6 @@ private:
                                                std::vector<std::uint8_t>& numbers)
     {
         numbers.assign(values.size(), 0);
-        const bool all_equal = std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end();
-        if (all_equal && !values.empty()) return {values.front()};  // most often the pieces
         const auto [low, high] = std::minmax_element(values.begin(), values.end());
         if (!values.empty() && *high - *low < NearValues::most)
             return NearValues(values, *low, *high, numbers).sorted();
@@ -152,16 +174,17 @@ private:
         return out;
     }
 
-    TilePiece packed_piece(std::uint32_t piece) const
+    TilePiece packed_piece(const PieceGroup& piece) const
     {
-        const Piece& from = scene_.pieces[piece];
+        const Piece& from = scene_.pieces[piece.piece];
         TilePiece out{};
         out.bottom = from.bottom;
-        out.piece = first_.piece + piece;
+        out.piece = first_.piece + piece.piece;
         out.part = first_.part + from.part;
         out.solid = from.solid;
         out.open = from.open;
         out.sides_up = from.sides_up;
+        if (piece.group > 0) out.group = first_.group + piece.group;
         return out;
     }
 
@@ -190,7 +213,8 @@ private:
     const std::span<const std::uint32_t> elements_;
     const ElementNumbers& first_;
     std::size_t triangles_ = 0;
-    std::vector<std::uint32_t> vertices_, pieces_;
+    std::vector<std::uint32_t> vertices_;
+    std::vector<PieceGroup> pieces_;
     std::vector<std::uint8_t> corner_numbers_, piece_numbers_;  ///< of the corners and the triangles of the tile
     std::string out_;
 };
@@ -217,7 +241,7 @@ Tile::Tile(std::string_view bytes)
     alive = elements() < TileBoxes::most ? (std::uint64_t{1} << elements()) - 1 : ~std::uint64_t{0};
 }
 
-bool is_consistent_tile(std::string_view bytes, std::size_t parts)
+bool is_consistent_tile(std::string_view bytes, const TileLimits& limits)
 {
     if (bytes.size() < sizeof(TileHead)) return false;
     TileHead head;
@@ -232,9 +256,9 @@ bool is_consistent_tile(std::string_view bytes, std::size_t parts)
         if (t.piece >= tile.pieces.size() || t.label > Label::Water) return false;
     }
     for (const TilePiece& p : tile.pieces)
-        if (p.part >= parts) return false;
+        if (p.part >= limits.parts || p.group > limits.groups) return false;
     for (const TilePrimitive& p : tile.primitives)
-        if (p.kind > ShapeKind::Capsule || p.label > Label::Water || p.part >= parts) return false;
+        if (p.kind > ShapeKind::Capsule || p.label > Label::Water || p.part >= limits.parts) return false;
     return true;
 }
 

@@ -59,12 +59,13 @@ struct TileTriangle {
 };
 static_assert(sizeof(TileTriangle) == 5);
 
+/// The faces of a piece that have the same face group.
 struct TilePiece {
     double bottom;        ///< Piece::bottom, m
     std::uint32_t piece;  ///< index in the scene
     std::uint32_t part;
-    std::uint8_t solid, open, sides_up;
-    std::array<std::uint8_t, 5> unused;
+    std::uint8_t solid, open, sides_up, unused;
+    std::uint32_t group;  ///< as in Scene::triangle_groups
 };
 static_assert(sizeof(TilePiece) == 24);
 
@@ -107,9 +108,14 @@ struct TileBoxes {
 };
 static_assert(sizeof(TileBoxes) == 384);
 
-/// Numbers of the first element, piece and part of a scene whose tiles are added to those of another scene.
+/// Numbers of the first element, piece, part and face group of a scene whose tiles are added to those of another scene.
 struct ElementNumbers {
-    std::uint32_t element = 0, piece = 0, part = 0;
+    std::uint32_t element = 0, piece = 0, part = 0, group = 0;
+};
+
+/// How many parts and face groups there are: numbers of parts in a tile are below, those of groups at most this.
+struct TileLimits {
+    std::size_t parts = 0, groups = 0;
 };
 
 /// A view of a tile's bytes as typed arrays. A tile has at most 64 elements that lie near each other. They are
@@ -152,6 +158,8 @@ struct Tile {
     {
         return is_triangle(element) ? piece(element).part : primitive(element).part;
     }
+    /// Returns the face group of an element, as in Scene::triangle_groups; 0 for a primitive.
+    std::uint32_t group(std::uint32_t element) const { return is_triangle(element) ? piece(element).group : 0; }
     /// Returns the bounds of an element, m.
     Bounds bounds(std::uint32_t element) const
     {
@@ -221,12 +229,12 @@ private:
 /// Returns the size of a tile with this head, bytes, without the padding at its end.
 std::uint64_t tile_size(const TileHead& head);
 
-/// Returns whether all counts and indices of a tile fit its bytes and the number of parts of the scene.
-bool is_consistent_tile(std::string_view bytes, std::size_t parts);
+/// Returns whether all counts and indices of a tile fit its bytes and the limits.
+bool is_consistent_tile(std::string_view bytes, const TileLimits& limits);
 
 /// Returns the bytes of a tile with these elements of the scene, which must be ascending; at most TileBoxes::most.
-/// `boxes` has the boxes of all elements of the scene. The numbers of elements, pieces and parts in the tile are those
-/// in the scene plus `first`.
+/// `boxes` has the boxes of all elements of the scene. The numbers of elements, pieces, parts and face groups in the
+/// tile are those in the scene plus `first`.
 std::string tile_of(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements,
                     const ElementNumbers& first);
 

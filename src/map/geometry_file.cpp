@@ -9,7 +9,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr TiledFormat geometry_format{"SPAWNGEO", 4, 2};
+constexpr TiledFormat geometry_format{"SPAWNGEO", 5, 2};
 
 std::string written_head(const Geometry::Impl& geometry)
 {
@@ -34,6 +34,15 @@ std::string written_head(const Geometry::Impl& geometry)
             out.put(n);
     }
     out.put_array(geometry.part_hashes);
+    out.put(std::uint32_t(geometry.face_groups.size()));
+    for (const FaceGroup& group : geometry.face_groups) {
+        out.put(group.part);
+        out.put_text(group.node);
+        out.put_text(group.material);
+        for (const std::uint64_t count : group.triangles) out.put(count);
+        out.put(group.low);
+        out.put(group.high);
+    }
     return out.take();
 }
 
@@ -51,6 +60,20 @@ void read_parts(BinaryReader& in, Geometry::Impl& geometry)
         for (std::uint32_t* n : {&part.solid_pieces, &part.sheet_pieces, &part.open_edges, &part.triangles})
             *n = in.get<std::uint32_t>();
         geometry.parts.push_back(std::move(part));
+    }
+}
+
+void read_face_groups(BinaryReader& in, Geometry::Impl& geometry)
+{
+    for (auto groups = in.get<std::uint32_t>(); groups > 0; --groups) {
+        FaceGroup group;
+        group.part = in.get<std::uint32_t>();
+        group.node = in.get_text();
+        group.material = in.get_text();
+        for (std::uint64_t& count : group.triangles) count = in.get<std::uint64_t>();
+        group.low = in.get<double>();
+        group.high = in.get<double>();
+        geometry.face_groups.push_back(std::move(group));
     }
 }
 
@@ -90,10 +113,13 @@ Geometry open_geometry(const std::filesystem::path& file, const std::string& hea
             trees.emplace_back(head.get_array<ElementBox>());
         read_parts(head, *impl);
         if (version > 3) impl->part_hashes = head.get_array<std::uint64_t>();
+        if (version > 4) read_face_groups(head, *impl);
         return levels;
     });
     if (file_version == 2) return of_version_2(tiles, *impl);
     if (file_version > 3 && impl->part_hashes.size() != impl->parts.size()) tiles.fail_inconsistent();
+    for (const FaceGroup& group : impl->face_groups)
+        if (group.part >= impl->parts.size()) tiles.fail_inconsistent();
     for (std::size_t tree = 0; tree < trees.size(); ++tree) {
         const std::vector<TileEntry>& entries = tiles.levels()[tree].tiles;
         const auto is_empty = [](const TileEntry& tile) { return tile.size == 0; };
@@ -101,9 +127,10 @@ Geometry open_geometry(const std::filesystem::path& file, const std::string& hea
             tiles.fail_inconsistent();
     }
     // The numbers of pieces are not in the head; each piece has at least one triangle.
-    const auto elements = std::uint32_t(impl->elements), parts = std::uint32_t(impl->parts.size());
-    impl->next = {elements, elements, parts};
-    impl->forests = {std::make_shared<const Forest>(Forest{std::move(tiles), std::move(trees), parts})};
+    const auto elements = std::uint32_t(impl->elements);
+    const TileLimits limits{impl->parts.size(), impl->face_groups.size()};
+    impl->next = {elements, elements, std::uint32_t(limits.parts), std::uint32_t(limits.groups)};
+    impl->forests = {std::make_shared<const Forest>(Forest{std::move(tiles), std::move(trees), limits})};
     return Geometry(std::move(impl));
 }
 

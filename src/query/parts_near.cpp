@@ -24,7 +24,7 @@ double distance_between(const Bounds& a, const Bounds& b)
 
 }  // namespace
 
-std::vector<PartsNear::Element> PartsNear::elements_of(const Geometry& geometry, const PartFlags& parts)
+std::vector<PartsNear::Element> PartsNear::elements_of(const Geometry& geometry, const Selection& parts)
 {
     std::vector<Element> found;
     std::vector<ElementBox> boxes;
@@ -33,7 +33,7 @@ std::vector<PartsNear::Element> PartsNear::elements_of(const Geometry& geometry,
         for (std::size_t number = 0; number < forest.trees[tree].boxes().size(); ++number) {
             const Tile tile = impl.open(forest, tree, number);
             for (std::uint32_t k = 0; k < tile.elements(); ++k) {
-                if (parts[tile.part(k)] == 0) continue;
+                if (!parts.contains(tile.part(k), tile.group(k))) continue;
                 found.push_back({&forest, std::uint32_t(tree), std::uint32_t(number), k, tile.box(k)});
                 boxes.push_back(found.back().box);
             }
@@ -53,7 +53,7 @@ std::vector<ElementBox> PartsNear::boxes_of(const std::vector<Element>& elements
     return out;
 }
 
-PartsNear::PartsNear(const Geometry& geometry, const PartFlags& parts)
+PartsNear::PartsNear(const Geometry& geometry, const Selection& parts)
     : geometry_(geometry), elements_(elements_of(geometry, parts)), tree_(boxes_of(elements_))
 {
     for (const Element& element : elements_) {

@@ -12,12 +12,12 @@ namespace spawnfield {
 
 struct Forest;
 
-/// Measures distances to some parts of a scene: to their triangles and solid shapes. Const calls may run at the same
-/// time.
+/// Measures distances to some parts and faces of a scene: to their triangles and solid shapes. Const calls may run at
+/// the same time.
 class PartsNear {
 public:
     /// Reads all tiles of the geometry. Throws FileError for a damaged one.
-    PartsNear(const Geometry& geometry, const PartFlags& parts);
+    PartsNear(const Geometry& geometry, const Selection& parts);
 
     /// Returns the shortest way from one of the bodies to the parts, m. Returns nothing if it is longer than `most`
     /// (may be infinite). The bodies are relative to `position`, and must lie near it.
@@ -32,7 +32,7 @@ private:
         std::uint32_t tree, tile, element;
         ElementBox box;
     };
-    static std::vector<Element> elements_of(const Geometry& geometry, const PartFlags& parts);
+    static std::vector<Element> elements_of(const Geometry& geometry, const Selection& parts);
     static std::vector<ElementBox> boxes_of(const std::vector<Element>& elements);
 
     Geometry geometry_;

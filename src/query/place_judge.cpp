@@ -1,6 +1,10 @@
 #include "query/place_judge.h"
 
+#include "base/bits.h"
+#include "geometry/geometry_impl.h"
 #include "query/sight.h"
+#include "settle/convex_distance.h"
+#include "settle/element_body.h"
 
 #include <spawnfield/error.h>
 
@@ -37,6 +41,37 @@ void check_rules(const PlaceRules& rules)
     for (const Vec3& point : rules.hidden_from) check_point("hidden_from", point);
 }
 
+/// Returns the face groups, as in Scene::triangle_groups, of the faces of a part that are nearest to a point on it:
+/// one, or several on an edge between them.
+std::vector<std::uint32_t> groups_at(const Geometry& geometry, const Vec3& point, std::uint32_t part)
+{
+    constexpr double reach = 0.01,  // m; contacts are at most 1 mm from their ground
+        equal = 1e-6;               // m
+    std::vector<std::pair<double, std::uint32_t>> found;
+    const Bounds near{point - Vec3::Constant(reach), point + Vec3::Constant(reach)};
+    const Convex at = convex_of(Vec3(Vec3::Zero()));
+    double least = reach;
+    geometry.impl().visit_tiles(near, [&](const Tile& tile, const ElementBox&) {
+        for_each_bit(tile.near(near), [&](std::uint32_t element) {
+            if (tile.part(element) != part) return;
+            found.emplace_back(shortest_way(at, body_of(tile, element, point)).norm(), tile.group(element));
+            least = std::min(least, found.back().first);
+        });
+    });
+    std::vector<std::uint32_t> out;
+    for (const auto& [distance, group] : found)
+        if (distance <= least + equal && std::find(out.begin(), out.end(), group) == out.end()) out.push_back(group);
+    return out;
+}
+
+/// Marks the parts that are not selected as a whole, but some of whose face groups are.
+void mark_divided(const Geometry& geometry, const Selection& selection, std::vector<bool>& marks)
+{
+    for (std::size_t k = 0; k < selection.groups.size(); ++k)
+        if (const std::uint32_t part = geometry.face_groups()[k].part; selection.groups[k] != 0)
+            marks[part] = marks[part] || selection.parts[part] == 0;
+}
+
 bool is_in_range(double value, double low, double high) { return value >= low && value <= high; }
 
 }  // namespace
@@ -52,13 +87,16 @@ PlaceJudge::PlaceJudge(const Geometry& geometry, const Robot& robot, const Place
     reach_ = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
     for (const RobotPart& part : robot.parts) bodies_.push_back(convex_of(part));
     if (!rules.on.empty()) {
-        on_ = matching_parts(geometry, rules.on, "on");
+        on_ = selection_of(geometry, rules.on, "on");
         on_parts_.emplace(geometry, *on_);
     }
-    if (!rules.not_on.empty()) not_on_ = matching_parts(geometry, rules.not_on, "not_on");
+    if (!rules.not_on.empty()) not_on_ = selection_of(geometry, rules.not_on, "not_on");
     for (const PlaceRules::Near& near : rules.near)
-        near_.push_back({PartsNear(geometry, matching_parts(geometry, {near.parts}, "near")), near.low, near.high});
-    if (!rules.facing.empty()) facing_.emplace(geometry, matching_parts(geometry, {rules.facing}, "facing"));
+        near_.push_back({PartsNear(geometry, selection_of(geometry, {near.parts}, "near")), near.low, near.high});
+    is_divided_.resize(geometry.parts().size());
+    for (const auto* selection : {&on_, &not_on_})
+        if (*selection) mark_divided(geometry, **selection, is_divided_);
+    if (!rules.facing.empty()) facing_.emplace(geometry, selection_of(geometry, {rules.facing}, "facing"));
     if (rules.clearance > 0) clearances_.emplace(geometry, robot);
 }
 
@@ -81,20 +119,31 @@ bool PlaceJudge::may_be_at_distances(const Rect& rect) const
     });
 }
 
-bool PlaceJudge::complies(const Pose& pose, std::span<const std::uint32_t> grounds) const
+bool PlaceJudge::complies(const Pose& pose, std::span<const GroundPoint> grounds) const
 {
-    const auto all_flagged = [&](const PartFlags& parts, std::uint8_t flag) {
-        return std::all_of(grounds.begin(), grounds.end(), [&](std::uint32_t part) { return parts[part] == flag; });
-    };
-    return is_at_distances(pose.position.head<2>()) && (!on_ || all_flagged(*on_, 1)) &&
-           (!not_on_ || all_flagged(*not_on_, 0)) && is_near(pose) && is_in_view(pose) &&
+    return is_at_distances(pose.position.head<2>()) && is_on(grounds) && is_near(pose) && is_in_view(pose) &&
            (!clearances_ || clearances_->clearance_at(pose) >= rules_.clearance);
+}
+
+bool PlaceJudge::is_on(std::span<const GroundPoint> grounds) const
+{
+    if (!on_ && !not_on_) return true;
+    return std::all_of(grounds.begin(), grounds.end(), [&](const GroundPoint& ground) {
+        const std::vector<std::uint32_t> groups = is_divided_[ground.part]
+                                                      ? groups_at(geometry_, ground.point, ground.part)
+                                                      : std::vector<std::uint32_t>{0};
+        const auto is_selected = [&](const Selection& selection) {
+            return [&](std::uint32_t group) { return selection.contains(ground.part, group); };
+        };
+        return (!on_ || std::all_of(groups.begin(), groups.end(), is_selected(*on_))) &&
+               (!not_on_ || std::none_of(groups.begin(), groups.end(), is_selected(*not_on_)));
+    });
 }
 
 bool PlaceJudge::complies(const SettledPose& pose, double lift) const
 {
-    std::vector<std::uint32_t> grounds;
-    for (const RestContact& contact : pose.contacts) grounds.push_back(contact.ground);
+    std::vector<GroundPoint> grounds;
+    for (const RestContact& contact : pose.contacts) grounds.push_back({contact.point, contact.ground});
     return complies(pose.lifted(lift), grounds);
 }
 

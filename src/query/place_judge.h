@@ -23,8 +23,13 @@ public:
 
     /// Returns whether a robot with its origin at this x and y can comply with the distances to points.
     bool is_at_distances(const Eigen::Vector2d& at) const;
-    /// Returns whether a valid pose complies with all rules. `grounds` are the parts on which the robot stands.
-    bool complies(const Pose& pose, std::span<const std::uint32_t> grounds) const;
+    /// A point at which the robot stands on a part of the scene.
+    struct GroundPoint {
+        Vec3 point;  ///< m
+        std::uint32_t part;
+    };
+    /// Returns whether a valid pose complies with all rules.
+    bool complies(const Pose& pose, std::span<const GroundPoint> grounds) const;
     /// The same for a settled pose, raised by `lift`.
     bool complies(const SettledPose& pose, double lift) const;
     /// Returns the yaw at which a robot at a place on the ground faces the parts of PlaceRules::facing; 0 if their
@@ -43,6 +48,7 @@ public:
     double reach() const { return reach_; }  ///< m: distance of the robot's farthest point from its origin
 
 private:
+    bool is_on(std::span<const GroundPoint> grounds) const;
     bool is_near(const Pose& pose) const;
     bool is_in_view(const Pose& pose) const;
 
@@ -50,7 +56,8 @@ private:
     const PlaceRules rules_;
     std::vector<Convex> bodies_;  ///< of the robot, in its frame
     double sensor_height_, half_height_, reach_ = 0;
-    std::optional<PartFlags> on_, not_on_;
+    std::optional<Selection> on_, not_on_;
+    std::vector<bool> is_divided_;  ///< for each part: only some of its faces are in on_, or in not_on_
     std::vector<NearParts> near_;
     std::optional<PartsNear> on_parts_, facing_;
     std::optional<ClearanceMeter> clearances_;

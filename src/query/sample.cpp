@@ -309,8 +309,8 @@ private:
         const Judgement judgement = judge.judge(column, out.spawn.position);
         out.set(judgement);
         if (judgement.verdict != Verdict::Valid) return out;
-        out.off_rules = places_.has_limits() &&
-                        !places_.complies(pose_of(out.spawn), std::span(&judgement.ground->part, 1));
+        const PlaceJudge::GroundPoint ground{{at.x(), at.y(), judgement.ground->height}, judgement.ground->part};
+        out.off_rules = places_.has_limits() && !places_.complies(pose_of(out.spawn), std::span(&ground, 1));
         return with_preference(out, from);
     }
 

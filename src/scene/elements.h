@@ -46,4 +46,10 @@ inline std::uint32_t element_part(const Scene& scene, std::uint32_t element)
                                        : primitive_of(scene, element).part;
 }
 
+/// Returns the face group of a triangle, as in Scene::triangle_groups.
+inline std::uint32_t face_group(const Scene& scene, std::uint32_t triangle)
+{
+    return triangle < scene.triangle_groups.size() ? scene.triangle_groups[triangle] : 0;
+}
+
 }  // namespace spawnfield

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 namespace spawnfield {
 namespace {
@@ -42,8 +41,11 @@ struct ShellAreas {
 /// Appends the faces of one node, piece by piece, without those that are ignored, and the vertices that they use.
 class NodeAppender {
 public:
-    NodeAppender(Scene& scene, std::uint32_t part, const FileMesh::Node& node, const MeshOptions& options, char up)
-        : scene_(scene), part_(part), node_(node), options_(options), up_(up), index_(node.vertices.size(), unused)
+    /// `groups` has the number of the face group of each material that the node uses, as in Scene::triangle_groups.
+    NodeAppender(Scene& scene, std::uint32_t part, const FileMesh::Node& node, const MeshOptions& options, char up,
+                 const std::vector<std::uint32_t>& groups)
+        : scene_(scene), part_(part), node_(node), options_(options), up_(up), groups_(groups),
+          index_(node.vertices.size(), unused)
     {
     }
 
@@ -98,6 +100,8 @@ private:
             triangle[corner] = vertex(node_.triangles[face][corner]);
             piece.bottom = std::min(piece.bottom, scene_.vertices[triangle[corner]].z());
         }
+        scene_.triangle_groups.resize(scene_.triangles.size());
+        scene_.triangle_groups.push_back(groups_[node_.materials[face]]);
         scene_.triangles.push_back(triangle);
         scene_.triangle_labels.push_back(label);
         scene_.triangle_pieces.push_back(static_cast<std::uint32_t>(scene_.pieces.size()));
@@ -127,19 +131,32 @@ private:
     const FileMesh::Node& node_;
     const MeshOptions& options_;
     const char up_;
+    const std::vector<std::uint32_t>& groups_;
     std::vector<std::uint32_t> index_;
 };
 
-/// Appends the face groups of a node, in the order of their materials.
-void append_groups(Scene& scene, std::uint32_t part, const FileMesh& mesh, const FileMesh::Node& node,
-                   const std::vector<Label>& labels, const NodeAppender& appender)
+/// Appends a face group for each material of the node, in the order of the materials. Returns their numbers by
+/// material, as in Scene::triangle_groups.
+std::vector<std::uint32_t> append_groups(Scene& scene, std::uint32_t part, const FileMesh& mesh,
+                                         const FileMesh::Node& node)
 {
     constexpr double infinite = std::numeric_limits<double>::infinity();
-    std::map<std::uint32_t, FaceGroup> groups;  // by material
+    std::vector<std::uint32_t> out(mesh.materials.size());
+    for (const std::uint32_t material : node.materials) out[material] = 1;
+    for (std::size_t material = 0; material < out.size(); ++material) {
+        if (out[material] == 0) continue;
+        scene.face_groups.push_back({part, node.name, mesh.materials[material], {}, infinite, -infinite});
+        out[material] = std::uint32_t(scene.face_groups.size());
+    }
+    return out;
+}
+
+/// Counts the faces of a node in their groups.
+void count_faces(Scene& scene, const FileMesh::Node& node, const std::vector<std::uint32_t>& groups,
+                 const std::vector<Label>& labels, const NodeAppender& appender)
+{
     for (std::size_t face = 0; face < node.triangles.size(); ++face) {
-        const auto [entry, is_new] = groups.try_emplace(node.materials[face]);
-        FaceGroup& group = entry->second;
-        if (is_new) group = {part, node.name, mesh.materials[node.materials[face]], {}, infinite, -infinite};
+        FaceGroup& group = scene.face_groups[groups[node.materials[face]] - 1];
         ++group.triangles[std::size_t(labels[face])];
         for (const std::uint32_t corner : node.triangles[face]) {
             const double z = appender.placed(corner).z();
@@ -147,7 +164,6 @@ void append_groups(Scene& scene, std::uint32_t part, const FileMesh& mesh, const
             group.high = std::max(group.high, z);
         }
     }
-    for (auto& [material, group] : groups) scene.face_groups.push_back(std::move(group));
 }
 
 void append_node(Scene& scene, std::uint32_t part, const FileMesh& mesh, const FileMesh::Node& node,
@@ -165,13 +181,14 @@ void append_node(Scene& scene, std::uint32_t part, const FileMesh& mesh, const F
     const FacePieces pieces = find_pieces(node.triangles);
     std::vector<std::vector<std::uint32_t>> faces(pieces.open_edges.size());
     for (std::uint32_t face = 0; face < pieces.of_face.size(); ++face) faces[pieces.of_face[face]].push_back(face);
-    NodeAppender appender(scene, part, node, options, options.up != 0 ? options.up : mesh.up);
+    const std::vector<std::uint32_t> groups = append_groups(scene, part, mesh, node);
+    NodeAppender appender(scene, part, node, options, options.up != 0 ? options.up : mesh.up, groups);
     for (std::size_t piece = 0; piece < faces.size(); ++piece) {
         if (options.auto_slope)
             appender.label_by_slope(faces[piece], has_rule, pieces.open_edges[piece], labels, areas);
         appender.add_piece(faces[piece], labels, pieces.open_edges[piece]);
     }
-    append_groups(scene, part, mesh, node, labels, appender);
+    count_faces(scene, node, groups, labels, appender);
 }
 
 }  // namespace

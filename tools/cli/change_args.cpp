@@ -112,22 +112,12 @@ Map with_scene(const CommonArgs& common, Scene extra, const std::string& file, c
     }
 }
 
-bool matches_some_part(const Map& map, const std::string& glob)
-{
-    try {
-        matching_parts(map.geometry, {glob}, "");
-        return true;
-    } catch (const ArgumentError&) {
-        return false;
-    }
-}
-
 /// Returns the globs of --without. Commas separate globs, unless a name matches the text as a whole.
 std::vector<std::string> globs_of(const std::vector<std::string>& texts, const Map& map)
 {
     std::vector<std::string> out;
     for (const std::string& text : texts) {
-        if (text.find(',') == std::string::npos || matches_some_part(map, text)) {
+        if (text.find(',') == std::string::npos || !parts_that_match(map.geometry, text).empty()) {
             out.push_back(text);
             continue;
         }

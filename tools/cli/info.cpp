@@ -100,6 +100,13 @@ Json json_of(const FaceGroup& group)
         {"node", group.node}, {"material", group.material}, {"triangles", triangles}, {"z", {group.low, group.high}}};
 }
 
+/// Adds a face group to the names of its part, which is entry `index` of the listed parts.
+void add_group(const FaceGroup& group, const Part& part, std::size_t index, Json& out)
+{
+    if (part.kind != "mesh" || index >= out["parts"].size()) return;  // other kinds are meshes that spawnfield made
+    out["parts"][index]["names"].push_back(json_of(group));
+}
+
 Json scene_json(const Scene& scene)
 {
     Json out = {{"kind", "scene"},
@@ -108,10 +115,7 @@ Json scene_json(const Scene& scene)
     add_contents(scene.count_labels(), scene.parts, out);
     const Json labels = labels_of_parts(scene);
     for (std::size_t p = 0; p < scene.parts.size(); ++p) out["parts"][p]["labels"] = labels[p];
-    for (const FaceGroup& group : scene.face_groups)
-        if (scene.parts[group.part].kind == "mesh")
-            out["parts"][group.part]["names"].push_back(
-                json_of(group));  // other kinds are meshes that spawnfield made itself
+    for (const FaceGroup& group : scene.face_groups) add_group(group, scene.parts[group.part], group.part, out);
     for (const NameRule& rule : scene.rules)
         out["rules"].push_back({{"what", rule.what}, {"label", to_string(rule.label)}, {"collisions", rule.count}});
     if (scene.origin) out["origin"] = json_of(*scene.origin);
@@ -202,7 +206,13 @@ Json map_json(const Map& map, std::span<const Part> parts, bool verified, std::s
         out["files"]["map.yaml"] = fs::file_size(map.folder / "map.yaml");
         for (const char* const name : map_files) out["files"][name] = fs::file_size(map.folder / name);
     }
-    add_contents(map.geometry.labels(), parts.first(std::min(parts.size(), most_parts)), out);
+    const Geometry& geometry = map.geometry;
+    add_contents(geometry.labels(), parts.first(std::min(parts.size(), most_parts)), out);
+    std::vector<std::size_t> places;  // of each part in `parts`, which has no removed ones
+    for (std::size_t part = 0, listed = 0; part < geometry.parts().size(); ++part)
+        places.push_back(geometry.is_removed(part) ? parts.size() : listed++);
+    for (const FaceGroup& group : geometry.face_groups())
+        add_group(group, geometry.parts()[group.part], places[group.part], out);
     return out;
 }
 
@@ -333,7 +343,7 @@ std::string more_line(std::size_t count)
 }
 
 /// Returns a line for each node and material of the meshes; those with the most triangles come first.
-std::string name_lines(const Json& parts)
+std::string name_lines(const Json& parts, const std::string& purpose)
 {
     struct Line {
         std::uint64_t triangles;
@@ -360,7 +370,7 @@ std::string name_lines(const Json& parts)
     if (lines.empty()) return "";
     std::stable_sort(lines.begin(), lines.end(),
                      [](const Line& l, const Line& r) { return l.triangles > r.triangles; });
-    std::string out = "names in meshes, for --label\n";
+    std::string out = "names in meshes, for " + purpose + "\n";
     for (std::size_t i = 0; i < std::min(most_lines, lines.size()); ++i) out += lines[i].text;
     return out + more_line(lines.size());
 }
@@ -380,7 +390,8 @@ std::string scene_lines(const Json& scene, std::span<const Part> all_parts)
     out += parts_heading(all_parts);
     const Json& parts = scene["parts"];
     for (std::size_t i = 0; i < std::min(most_lines, parts.size()); ++i) out += part_line(parts[i]);
-    return out + more_line(all_parts.size()) + name_lines(parts);
+    const bool is_map = scene["kind"] == "map";
+    return out + more_line(all_parts.size()) + name_lines(parts, is_map ? "rules of place such as --on" : "--label");
 }
 
 /// Returns a heading, then a line for each floor, the highest first.

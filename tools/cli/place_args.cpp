@@ -78,12 +78,12 @@ void add_place_rules(CLI::App& command, PlaceArgs& args)
                        "m: at least this much free room around the robot: the shortest horizontal shift with which it "
                        "touches an obstacle (at most 10; default 0)");
     add("--near", args.near,
-        "GLOB LOW:HIGH: the distance in 3D between the robot and the nearest part with such a name is LOW .. HIGH m, "
-        "for example 'shelf*' 0.5:1 (repeatable)")
+        "GLOB LOW:HIGH: the distance in 3D between the robot and the nearest part, node or material with such a name "
+        "is LOW .. HIGH m, for example 'shelf*' 0.5:1 (repeatable)")
         ->type_name("GLOB LOW:HIGH");
-    command.add_option("--facing", args.facing, "GLOB: the robot looks at the nearest part with such a name");
-    add("--on", args.on, "GLOB: the robot stands on parts with such names only (repeatable)");
-    add("--not-on", args.not_on, "GLOB: the robot does not stand on a part with such a name (repeatable)");
+    command.add_option("--facing", args.facing, "GLOB: the robot looks at the nearest of those");
+    add("--on", args.on, "GLOB: the robot stands only on such parts, nodes or materials (repeatable)");
+    add("--not-on", args.not_on, "GLOB: the robot stands on none of those (repeatable)");
     add("--distance-to", args.distance_to,
         "x,y LOW:HIGH in m: horizontal distance of the robot's origin from a point (repeatable)")
         ->type_name("x,y LOW:HIGH");
@@ -206,9 +206,7 @@ void notice_if_no_obstacles(const CommonArgs& common, const std::string& option,
 
 void check_places(const CommonArgs& common, const PlaceRules& rules, const Map& map)
 {
-    const auto check = [&](const char* option, const std::string& glob) {
-        matching_parts(map.geometry, {glob}, option);
-    };
+    const auto check = [&](const char* option, const std::string& glob) { selection_of(map.geometry, {glob}, option); };
     for (const std::string& glob : rules.on) check("--on", glob);
     for (const std::string& glob : rules.not_on) check("--not-on", glob);
     for (const PlaceRules::Near& near : rules.near) check("--near", near.parts);
