@@ -384,10 +384,10 @@ TEST_CASE("a map folder that is cut short, altered, newer or not a map is refuse
     folder.write("map/map.yaml", bad);
     CHECK(read() == "@/map/map.yaml: differs from the hash in its last line: it was altered; bake the map again");
     bad = good;
-    bad.replace(0, bad.find('\n'), "format: spawnfield-map/7");
+    bad.replace(0, bad.find('\n'), "format: spawnfield-map/8");
     folder.write("map/map.yaml", bad);
     CHECK(read() ==
-          "@/map/map.yaml: has format version 7, this program reads 2 to 6; bake the map again or use a newer "
+          "@/map/map.yaml: has format version 8, this program reads 2 to 7; bake the map again or use a newer "
           "spawnfield");
     folder.write("map/map.yaml", "image: map.pgm\n");
     CHECK(read() ==
@@ -491,7 +491,7 @@ TEST_CASE("a geometry file with invalid indices is refused, even if its checksum
         change(levels, tile, Tile({tile, entry->size}));
         entry->checksum = XXH64(tile, entry->size, 0);
         changed.forests = {std::make_shared<const Forest>(
-            Forest{TileStore(std::move(levels), spawnfield::bytes_of(std::move(tiles))), forest.trees, forest.parts})};
+            Forest{TileStore(std::move(levels), spawnfield::bytes_of(std::move(tiles))), forest.trees, forest.limits})};
         const fs::path file = folder / "geometry.bin";
         return complaint(folder, [&] {
             const ListedFile written = write_geometry(

@@ -86,7 +86,8 @@ FileMesh road_and_sidewalk()
                        .vertices = {{-6, -2, 0}, {0, -2, 0}, {6, -2, 0}, {-6, 2, 0}, {0, 2, 0}, {6, 2, 0}},
                        .triangles = {{0, 1, 4}, {1, 2, 5}, {0, 4, 3}, {1, 5, 4}},
                        .materials = {0, 1, 0, 1}}},
-            .materials = {"road", "sidewalk"}};
+            .materials = {"road", "sidewalk"},
+            .notices = {}};
 }
 
 Vec3 random_direction(Random& random)
@@ -359,7 +360,7 @@ TEST_CASE("nodes and materials of a mesh file can be selected, also in a changed
                 "usemtl road\nf 1 2 5 4\nusemtl sidewalk\nf 2 3 6 5\n"
                 "o tree_1\nv 3 0 0\nv 3 0.1 0\nv 3 0 2\nusemtl oak\nf 7 8 9\n");
     arena.write("scene.yaml",
-                "format: spawnfield-scene/1\nname: town\nparts:\n- {name: plate, label: terrain, "
+                "format: spawnfield-scene/1\nname: town\nparts:\n- {name: plate, label: obstacle, "
                 "box: [1, 1, 0.1], xyz: [0, 0, -2]}\n- {name: town, label: terrain, mesh: "
                 "town.obj, up: z, labels: [{node: 'tree*', label: obstacle}]}\n");
     REQUIRE(arena("bake scene.yaml -o town").status == 0);
@@ -381,16 +382,16 @@ TEST_CASE("nodes and materials of a mesh file can be selected, also in a changed
     };
     for (const Point& at : spawns(" --on SIDE*")) CHECK(at.x() > 0.2 - 1e-6);
     for (const Point& at : spawns(" --not-on sidewalk")) CHECK(at.x() < -0.2 + 1e-6);
-    for (const Point& at : spawns(" --near 'tree_?' 0.5:0.6")) CHECK(std::abs((at - Point(3, 0)).norm() - 0.7) < 0.25);
+    for (const Point& at : spawns(" --near 'tree_?' 0.5:0.6")) CHECK(std::abs((at - Point(3, 0)).norm() - 0.85) < 0.16);
     for (const Point& at : spawns(" --on oa? --on road --on 'side*' --near oak :1")) CHECK(at.x() > 1);
     // In a map with another mesh and without the first part, the numbers of the face groups are still right.
     arena.write("more.yaml",
-                "format: spawnfield-scene/1\nname: more\nparts:\n- {name: north, label: terrain, mesh: "
-                "town.obj, up: z, xyz: [0, 4, 0], labels: [{node: 'tree*', label: obstacle}]}\n");
+                "format: spawnfield-scene/1\nname: more\nparts:\n- {name: west, label: ignore, mesh: "
+                "town.obj, up: z, xyz: [-6, 0, 0], labels: [{node: 'tree*', label: obstacle}]}\n");
     for (const Point& at : spawns(" --with more.yaml --without plate --on sidewalk")) CHECK(at.x() > 0.2 - 1e-6);
-    bool is_north = false;
-    for (const Point& at : spawns(" --with more.yaml --near tree_1 0:0.6")) is_north |= at.y() > 3;
-    CHECK(is_north);
+    bool is_west = false;
+    for (const Point& at : spawns(" --with more.yaml --near tree_1 0:0.6")) is_west |= at.x() < -2;
+    CHECK(is_west);
     const ProgramRun none = arena("sample town --robot box:0.4,0.4,0.2 -n 1 --on lawn");
     CHECK(none.status == 2);
     CHECK_THAT(none.err, Contains("--on \"lawn\" matches no part of the map, and no node or material of its meshes; "

@@ -2,6 +2,7 @@
 #include "catch.h"
 #include "compare.h"
 #include "reach/disjoint_sets.h"
+#include "reach/head_room.h"
 #include "reach/reach_graph.h"
 #include "reach/way_judge.h"
 #include "rest_robots.h"
@@ -485,6 +486,46 @@ TEST_CASE("states that are proven without letting the robot down are valid")
                                               "tilted", "near the edge",        "above its origin"};
         CHECK((proven[robot.name] > 0) == !difficult.contains(robot.name));
     }
+}
+
+TEST_CASE("valid poses have the least head room of their robot, and not much more is proven of a box")
+{
+    const Robot box = make_robot("box", {shape_part(box_shape({0.6, 0.4, 0.3}, {{0, 0, 0.15}}))});
+    const double radius = 0.15, aside = radius * std::sin(0.5);  // of a ball in the middle
+    CHECK(least_head_room(box, 0.5) >= 2 * std::sqrt(radius * radius - aside * aside) - 1e-12);
+    CHECK(least_head_room(box, 0.5) <= 0.3);
+    Robot fork = box;  // with a prong below, on the axis
+    fork.parts.push_back(shape_part(box_shape({0.6, 0.4, 0.02}, {{0, 0, -0.1}})));
+    CHECK(least_head_room(fork, 0.5) < 0.021);
+    Robot hollow = make_robot("hollow", {shape_part(box_shape({0.1, 0.1, 0.3}, {{0.3, 0, 0.15}}))});
+    CHECK(least_head_room(hollow, 0.5) == 0);
+    std::size_t too_low = 0, valid = 0;
+    const std::vector<Robot> robots = robots_of_all_kinds();
+    for (std::uint64_t seed = 1; seed <= compare::scene_count / 10; ++seed) {
+        CAPTURE(seed);
+        const Robot& robot = robots[seed % robots.size()];
+        const Vec3 size = robot.bounds().max - robot.bounds().min;
+        const double half = 2 * std::max(size.x(), size.y());
+        const Map map = map_of(furnished(seed, half), 0.1);
+        const Judge judge(map, robot);
+        const double least = least_head_room(robot, judge.options().stand.max_slope);
+        Random random(seed);
+        for (int n = 0; n < 200 && least > 0; ++n) {
+            const double x = random.between(-half, half), y = random.between(-half, half);
+            const Column column = column_at(map.geometry, x, y);
+            for (const double layer : column.layers) {
+                double room = 1e9;
+                for (const Span& span : column.spans)
+                    if (span.top > layer + layer_tolerance) room = std::min(room, span.bottom - layer);
+                const bool is_valid = judge.settle({x, y, layer}, random.between(-3, 3)).verdict == Verdict::Valid;
+                if (is_valid) CHECK(room >= least - 1e-6);
+                valid += is_valid && room < 3 * least;
+                too_low += room < least;
+            }
+        }
+    }
+    CHECK(too_low > 0);
+    CHECK(valid > 0);
 }
 
 TEST_CASE("nothing is proven inside a mesh that is filled although it has holes")

@@ -59,5 +59,5 @@ TEST_CASE("a stored map of format version 1 is refused with the reason")
     const StoredMap stored(1);
     const ProgramRun run = run_program(stored, "info map");
     CHECK(run.status == 4);
-    CHECK_THAT(run.err, Contains("map/map.yaml: has format version 1, this program reads 2 to 6; bake the map again"));
+    CHECK_THAT(run.err, Contains("map/map.yaml: has format version 1, this program reads 2 to 7; bake the map again"));
 }

@@ -1,4 +1,5 @@
 #include "catch.h"
+#include "compare.h"
 #include "paths.h"
 #include "program.h"
 #include "random_scene.h"
@@ -120,11 +121,7 @@ using Names = std::vector<std::string>;
 
 namespace {
 
-#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-constexpr std::uint64_t step = 1;
-#else
-constexpr std::uint64_t step = 6;  // all changes would take many minutes without optimisation or with a sanitizer
-#endif
+constexpr std::uint64_t step = compare::all_scenes ? 1 : 6;
 
 /// Makes random changes, each of them forth and back. Returns how many were baked in full.
 std::size_t check_random_changes(std::uint64_t first, std::uint64_t last)

@@ -29,8 +29,15 @@ DisjointSets GraphBuilder::run()
         };
         parallel_for(std::size_t(end - begin), threads, report, [&](std::size_t k) { find_states(begin + int(k)); });
         for (int row = begin; row < end; ++row) append(rows_[std::size_t(row)]);
-        for (const Pass& pass : passes_)
-            parallel_for(std::size_t(ready - done), threads, {}, [&](std::size_t k) { join_row(done + int(k), pass); });
+        const auto for_rows = [&](int from, int to, auto&& visit) {
+            parallel_for(std::size_t(to - from), threads, {}, [&](std::size_t k) { visit(from + int(k)); });
+        };
+        if (!is_car_ && !keeps_ways_) {
+            for_rows(begin, end, [&](int row) { join_open(row); });
+            for_rows(begin, end, [&](int row) { find_open_sets(row); });
+            for_rows(done, ready, [&](int row) { find_joined(row); });
+        }
+        for (const Pass& pass : passes_) for_rows(done, ready, [&](int row) { join_row(row, pass); });
         done = ready;
         for (int row = std::max(0, begin - band - longest); row < done - longest; ++row) rows_[std::size_t(row)] = {};
     }
@@ -74,20 +81,81 @@ void GraphBuilder::append(const StateRow& row)
     }
     nodes_.grow(graph_.first_node.back());
     if (!keeps_ways_) return;
-    ReachGraph::Impl::Ways none;
-    none.fill(ReachGraph::Impl::nowhere);
-    for (const Pass& pass : passes_) graph_.ways[std::size_t(pass.way)].resize(graph_.ground.size(), none);
-    graph_.ways[std::size_t(Way::Turn)].resize(graph_.ground.size(), none);
+    ReachGraph::Impl::Ways no_ways;
+    no_ways.fill(ReachGraph::Impl::nowhere);
+    for (const Pass& pass : passes_) graph_.ways[std::size_t(pass.way)].resize(graph_.ground.size(), no_ways);
+    graph_.ways[std::size_t(Way::Turn)].resize(graph_.ground.size(), no_ways);
+}
+
+/// Returns the node of a column whose only place is open.
+std::optional<std::uint32_t> GraphBuilder::open_node(int col, int row) const
+{
+    const std::span<const PlaceStates> places = places_at(col, row);
+    if (places.size() != 1 || !places[0].is_open) return std::nullopt;
+    return node_of({col, row, 0}, 0);
+}
+
+/// Joins the open places of a row with their neighbours before them in the row and in the column. So most of the ways
+/// of a wide level place need not be examined.
+void GraphBuilder::join_open(int row)
+{
+    const WayJudge& judge = graph_.way_judges.local();
+    for (int col = 0; col < graph_.grid.cols; ++col) {
+        const auto node = open_node(col, row);
+        if (!node) continue;
+        for (const LatticeMove back : {LatticeMove{-1, 0}, LatticeMove{0, -1}}) {
+            const auto other = open_node(col + back.cols, row + back.rows);
+            if (other && judge.are_level(place({col, row, 0}), place({col + back.cols, row + back.rows, 0})))
+                nodes_.join(*node, *other);
+        }
+    }
+}
+
+void GraphBuilder::find_open_sets(int row)
+{
+    StateRow& states = rows_[std::size_t(row)];
+    const auto cols = std::size_t(graph_.grid.cols);
+    states.open_sets.assign(cols, none);
+    states.run.assign(cols, 0);
+    for (std::size_t col = 0; col < cols; ++col) {
+        const auto node = open_node(int(col), row);
+        if (!node) continue;
+        states.open_sets[col] = nodes_.find(*node);
+        states.run[col] = col > 0 && states.open_sets[col - 1] == states.open_sets[col] ? states.run[col - 1] + 1 : 1;
+    }
+}
+
+/// Finds the columns in the middle of a square of open places that are joined. No way leads out of this square. Sets
+/// only grow, so two places that had the same set at different times are joined.
+void GraphBuilder::find_joined(int row)
+{
+    const int side = graph_.lattice.longest_rows(), cols = graph_.grid.cols;
+    std::vector<std::uint8_t>& out = rows_[std::size_t(row)].is_joined;
+    out.assign(std::size_t(cols), 0);
+    if (row < side || row + side >= graph_.grid.rows) return;
+    for (int col = side; col + side < cols; ++col) {
+        const auto last = std::size_t(col + side);
+        const std::uint32_t set = rows_[std::size_t(row)].open_sets[last];
+        bool all_equal = set != none;
+        for (int r = row - side; r <= row + side && all_equal; ++r) {
+            const StateRow& other = rows_[std::size_t(r)];
+            all_equal = other.open_sets[last] == set && other.run[last] > std::uint32_t(2 * side);
+        }
+        out[std::size_t(col)] = all_equal ? 1 : 0;
+    }
 }
 
 void GraphBuilder::join_row(int row, const Pass& pass)
 {
     WayJudge& judge = graph_.way_judges.local();
-    for (int col = 0; col < graph_.grid.cols; ++col)
+    const std::vector<std::uint8_t>& is_joined = rows_[std::size_t(row)].is_joined;
+    for (int col = 0; col < graph_.grid.cols; ++col) {
+        if (!is_joined.empty() && is_joined[std::size_t(col)] != 0) continue;
         for (std::size_t k = 0; k < places_at(col, row).size(); ++k)
             for (int heading = 0; heading < lattice_headings; ++heading)
                 if (const PlaceAt from{col, row, k}; has_heading(place(from).valid, heading))
                     examine(judge, from, heading, pass);
+    }
 }
 
 /// Joins a state and the one to which a way leads, if there is one.

@@ -4,6 +4,8 @@
 #include "reach/reach_graph.h"
 
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,7 +30,12 @@ private:
     struct StateRow {
         std::vector<std::uint32_t> first;  ///< first place of each column; then their number
         std::vector<PlaceStates> places;
+        /// For each column whose only place is open, a number of the set of its node; else `none`.
+        std::vector<std::uint32_t> open_sets;
+        std::vector<std::uint32_t> run;       ///< how many columns up to this one have the same open set
+        std::vector<std::uint8_t> is_joined;  ///< for each column, whether all of its ways lead to joined nodes
     };
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
     /// A column, and one of its places.
     struct PlaceAt {
         int col, row;
@@ -49,6 +56,10 @@ private:
 
     void find_states(int row);
     void append(const StateRow& row);
+    std::optional<std::uint32_t> open_node(int col, int row) const;
+    void join_open(int row);
+    void find_open_sets(int row);
+    void find_joined(int row);
     void join_row(int row, const Pass& pass);
     void examine(WayJudge& judge, const PlaceAt& from, int heading, const Pass& pass);
     bool may_join(const WayJudge& judge, const PlaceAt& from, int heading, Way way);

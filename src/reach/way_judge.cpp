@@ -1,5 +1,7 @@
 #include "reach/way_judge.h"
 
+#include "reach/head_room.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -60,8 +62,9 @@ std::pair<Vec2, double> Course::at(double t) const
 
 WayJudge::WayJudge(const Judge::Impl& shared, double max_step, const Lattice& lattice, double step)
     : shared_(shared), lattice_(lattice), max_step_(max_step), step_(step), longest_way_(lattice.longest() * step),
-      radius_(shared.settler().reach()), steepest_(std::tan(shared.options.stand.max_slope)), stand_(shared),
-      columns_(shared, 0), level_(shared), sweep_(shared.map.geometry, shared.robot)
+      radius_(shared.settler().reach()), steepest_(std::tan(shared.options.stand.max_slope)),
+      head_room_(shared.options.exhaustive ? 0 : least_head_room(shared.robot, shared.options.stand.max_slope)),
+      stand_(shared), columns_(shared, 0), level_(shared), sweep_(shared.map.geometry, shared.robot)
 {
     for (const Way way : all_ways)
         for (int heading = 0; heading < lattice_headings; ++heading)
@@ -84,6 +87,7 @@ void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out)
     const ColumnView column(columns_.column_at(at));
     bool has_solids = false;
     for (const double height : heights_within(column.layers, shared_.map.z_limits)) {
+        if (!has_head_room(column, height)) continue;
         PlaceStates place{.ground = height};
         bool is_level = level_.is_possible();
         if (is_level && !has_solids) {
@@ -111,6 +115,16 @@ void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out)
             place.slopes[std::size_t(heading)] = slope_at(at, place.ground, direction_of(heading));
 }
 
+/// Returns whether the next surface above a layer of a column leaves room for the robot. False: it stands there at no
+/// heading.
+bool WayJudge::has_head_room(const ColumnView& column, double height) const
+{
+    constexpr double slack = 1e-4;  // m; more than any contact is off its surface
+    return head_room_ == 0 || std::none_of(column.spans.begin(), column.spans.end(), [&](const Span& span) {
+               return span.top > height + layer_tolerance && span.bottom < height + head_room_ - slack;
+           });
+}
+
 /// Returns whether a place has what LevelGround does not examine: ground that can be used, also for the robot at rest,
 /// and nothing filled around it.
 bool WayJudge::is_proven(const ColumnView& column, const Vec3& place)
@@ -131,8 +145,7 @@ std::optional<std::size_t> WayJudge::place_ahead(const Vec2& from, const PlaceSt
                                                  std::span<const PlaceStates> others, int direction, int at_heading)
 {
     // On level ground, the step cannot be larger.
-    if (others.size() == 1 && (place.is_open || others[0].is_open) && 3 * level_.flatness() <= max_step_ &&
-        std::abs(others[0].ground - place.ground) <= 2 * level_.flatness())
+    if (others.size() == 1 && (place.is_open || others[0].is_open) && are_level(place, others[0]))
         return has_heading(others[0].valid, at_heading) ? std::optional<std::size_t>(0) : std::nullopt;
     return lowest_step((to - from).norm(), place.ground, others, at_heading,
                        [&] { return slope_at(from, place, direction); },

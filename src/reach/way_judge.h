@@ -82,6 +82,12 @@ public:
         return (from.place.is_open || to.place.is_open) &&
                std::abs(from.place.ground - to.place.ground) <= 2 * level_.flatness();  // it may be another layer
     }
+    /// Returns whether there are ways between two open places that are neighbours in a row or in a column of the grid,
+    /// each the only place of its column.
+    bool are_level(const PlaceStates& place, const PlaceStates& other) const
+    {
+        return std::abs(other.ground - place.ground) <= 2 * level_.flatness() && 3 * level_.flatness() <= max_step_;
+    }
     /// Returns whether the robot meets nothing on a way from one state to another one.
     bool can_go(const StateAt& from, const StateAt& to, Way way);
 
@@ -116,6 +122,7 @@ private:
                                            int heading);
     double slope_at(const Vec2& at, const PlaceStates& place, int heading);
     double slope_at(const Vec2& at, double ground, const Vec2& ahead);
+    bool has_head_room(const ColumnView& column, double height) const;
     bool is_proven(const ColumnView& column, const Vec3& place);
     double rise_of(Way way, int heading) const;
     void set_start(const Vec2& at);
@@ -131,8 +138,9 @@ private:
     const Judge::Impl& shared_;
     const Lattice& lattice_;
     const double max_step_, step_, longest_way_;
-    const double radius_;    ///< distance of the robot's farthest point from its origin, m
-    const double steepest_;  ///< slope on which it may stand
+    const double radius_;     ///< distance of the robot's farthest point from its origin, m
+    const double steepest_;   ///< slope on which it may stand
+    const double head_room_;  ///< at least so much is free above a place with a state, m; 0: unknown
     std::array<std::array<double, lattice_headings>, way_count> rises_{};  ///< see largest_rise()
     StandJudge stand_;
     PoseJudge columns_;
