@@ -257,14 +257,17 @@ std::size_t check_proven(const TestMap& map, const Robot& robot, double step, co
     WayJudge ways(judge.impl(), 0.03, lattice, step / lattice.longest());
     std::size_t proven = 0;
     std::vector<PlaceStates> places;
+    DetailsStore details;
     for (double y = map.bounds.min.y(); y <= map.bounds.max.y(); y += step)
         for (double x = map.bounds.min.x(); x <= map.bounds.max.x(); x += step) {
             places.clear();
-            ways.find_places({x, y}, places);
+            details.clear();
+            ways.find_places({x, y}, places, details);
             for (const PlaceStates& place : places)
                 for (int k = 0; k < headings; ++k) {
-                    const StatePose& state = place.poses[std::size_t(k)];
-                    if (!has_heading(place.valid, k) || state.is_exact) continue;
+                    if (!has_heading(place.valid, k)) continue;
+                    const StatePose state = place.pose(k);
+                    if (state.is_exact) continue;
                     ++proven;
                     const SettledPose pose = judge.settle({x, y, place.ground}, lattice_yaw(k));
                     CAPTURE(robot.name, x, y, place.ground, k, place.is_open);
@@ -526,6 +529,55 @@ TEST_CASE("valid poses have the least head room of their robot, and not much mor
     }
     CHECK(too_low > 0);
     CHECK(valid > 0);
+}
+
+TEST_CASE("the place of all columns of a rectangle is the only one of each")
+{
+    const Robot robot = boxy({0.3, 0.2, 0.2});
+    const Lattice lattice;
+    constexpr double step = 0.08;
+    std::size_t proven = 0, not_proven = 0;
+    for (std::uint64_t seed = 1; seed <= compare::scene_count; ++seed) {
+        CAPTURE(seed);
+        Random random(seed);
+        Scene scene;
+        const auto sheet = [&](const char* name, Label label, double x, double y, double z) {
+            add_mesh(scene, name, label, {{-x, -y, z}, {x, -y, z}, {x, y, z}, {-x, y, z}}, {{0, 1, 2}, {0, 2, 3}});
+        };
+        if (random.chance(0.5))
+            add_block(scene, {-4, -4, -0.3}, {4, 4, 0});
+        else
+            sheet("floor", Label::Terrain, 4, 4, 0);
+        if (random.chance(0.4)) sheet("below", Label::Terrain, 4, random.between(1, 4), random.between(-0.5, -1e-6));
+        if (random.chance(0.2)) sheet("above", Label::Terrain, random.between(0.1, 4), 4, random.between(1e-7, 2));
+        if (random.chance(0.2)) sheet("pool", Label::Water, random.between(0.1, 2), 1, random.between(-1, 1));
+        if (random.chance(0.4))
+            add_shape(scene, "ball", random.chance(0.5) ? Label::Obstacle : Label::Terrain,
+                      sphere_shape(random.between(0.01, 0.5),
+                                   {random.between(-4, 4), random.between(-4, 4), random.between(-2, 2)}));
+        const TestMap map = map_of(std::move(scene), 0.1);
+        const Judge judge(map, robot);
+        WayJudge ways(judge.impl(), 0.03, lattice, step);
+        for (int n = 0; n < 10; ++n) {
+            const Vec2 low(random.between(-3.5, 2.5), random.between(-3.5, 2.5)),
+                high = low + Vec2(random.between(0, 1.2), random.between(0, 1.2));
+            const auto same = ways.place_of_all(low, high);
+            ++(same ? proven : not_proven);
+            for (int k = 0; k < 20 && same; ++k) {
+                std::vector<PlaceStates> places;
+                DetailsStore details;
+                ways.find_places({random.between(low.x(), high.x()), random.between(low.y(), high.y())}, places,
+                                 details);
+                REQUIRE(places.size() == 1);
+                CHECK(places[0].is_open);
+                CHECK(places[0].ground == same->ground);
+                CHECK(places[0].valid == same->valid);
+                CHECK(places[0].level_z == same->level_z);
+            }
+        }
+    }
+    CHECK(proven > 50);
+    CHECK(not_proven > 50);
 }
 
 TEST_CASE("nothing is proven inside a mesh that is filled although it has holes")

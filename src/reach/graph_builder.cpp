@@ -5,6 +5,12 @@
 #include <cmath>
 
 namespace spawnfield {
+namespace {
+
+constexpr int block = 16;  // columns of a block along a row
+
+}  // namespace
+
 GraphBuilder::GraphBuilder(ReachGraph::Impl& graph)
     : graph_(graph), keeps_ways_(graph.keep == ReachGraph::Impl::Keep::Ways),
       is_car_(graph.options.drive == Drive::Car), rows_(std::size_t(graph.grid.rows))
@@ -18,7 +24,7 @@ GraphBuilder::GraphBuilder(ReachGraph::Impl& graph)
 DisjointSets GraphBuilder::run()
 {
     const int threads = graph_.options.threads, rows = graph_.grid.rows, longest = graph_.lattice.longest_rows();
-    const int band = std::max(16, 2 * longest);  // rows whose states are found before the ways between them
+    const int band = std::max(block, 2 * longest);  // rows whose states are found before the ways between them
     graph_.first.assign(1, 0);
     graph_.first_node.assign(1, 0);
     int done = 0;  // rows whose ways are known
@@ -27,6 +33,7 @@ DisjointSets GraphBuilder::run()
         const auto report = [&](double share) {
             if (graph_.options.progress) graph_.options.progress((begin + share * (end - begin)) / rows);
         };
+        find_blocks(begin, end);
         parallel_for(std::size_t(end - begin), threads, report, [&](std::size_t k) { find_states(begin + int(k)); });
         for (int row = begin; row < end; ++row) append(rows_[std::size_t(row)]);
         const auto for_rows = [&](int from, int to, auto&& visit) {
@@ -57,13 +64,28 @@ std::size_t GraphBuilder::number_of(const PlaceAt& at) const
     return graph_.first[graph_.column_of(at.col, at.row)] + at.index;
 }
 
+/// Finds the blocks of some rows whose columns all have the same open place. Most of a wide level place needs no more
+/// than that.
+void GraphBuilder::find_blocks(int begin, int end)
+{
+    blocks_.assign(std::size_t(graph_.grid.cols / block + 1), std::nullopt);
+    parallel_for(blocks_.size(), graph_.options.threads, {}, [&](std::size_t b) {
+        const int first = int(b) * block, last = std::min(first + block, graph_.grid.cols) - 1;
+        if (first <= last)
+            blocks_[b] = graph_.way_judges.local().place_of_all(position(first, begin), position(last, end - 1));
+    });
+}
+
 void GraphBuilder::find_states(int row)
 {
     StateRow& out = rows_[std::size_t(row)];
     WayJudge& judge = graph_.way_judges.local();
     for (int col = 0; col < graph_.grid.cols; ++col) {
         out.first.push_back(std::uint32_t(out.places.size()));
-        judge.find_places(position(col, row), out.places);
+        if (const auto& same = blocks_[std::size_t(col / block)])
+            out.places.push_back(*same);
+        else
+            judge.find_places(position(col, row), out.places, out.details);
     }
     out.first.push_back(std::uint32_t(out.places.size()));
 }

@@ -30,6 +30,7 @@ private:
     struct StateRow {
         std::vector<std::uint32_t> first;  ///< first place of each column; then their number
         std::vector<PlaceStates> places;
+        DetailsStore details;  ///< of the places
         /// For each column whose only place is open, a number of the set of its node; else `none`.
         std::vector<std::uint32_t> open_sets;
         std::vector<std::uint32_t> run;       ///< how many columns up to this one have the same open set
@@ -54,6 +55,7 @@ private:
     std::uint32_t node_of(const PlaceAt& at, int heading) const { return graph_.node_of(number_of(at), heading); }
     Vec2 position(int col, int row) const { return {graph_.grid.x_of(col), graph_.grid.y_of(row)}; }
 
+    void find_blocks(int begin, int end);
     void find_states(int row);
     void append(const StateRow& row);
     std::optional<std::uint32_t> open_node(int col, int row) const;
@@ -72,6 +74,9 @@ private:
     const bool keeps_ways_, is_car_;
     std::vector<Pass> passes_;
     std::vector<StateRow> rows_;
+    /// For each block of columns of the rows that are examined, the place that all of its columns have, if they have
+    /// the same open one.
+    std::vector<std::optional<PlaceStates>> blocks_;
     DisjointSets nodes_;
 };
 

@@ -159,12 +159,13 @@ void LevelGround::set_place(const Vec2& place, double radius)
     origin_ = {place.x(), place.y(), 0};
     radius_ = radius;
     solids_.clear();
-    is_unsealed_ = false;
+    is_unsealed_ = has_water_ = false;
     shared_.map.geometry.impl().visit_in(
         place.x() - radius, place.y() - radius, place.x() + radius, place.y() + radius,
         [&](const Tile& tile, auto element) {
             const Label label = tile.label(element);
             is_unsealed_ |= tile.is_triangle(element) && tile.piece(element).open != 0;
+            has_water_ |= label == Label::Water;
             if (label == Label::Water || label == Label::Ignore) return;
             solids_.push_back(tile.is_triangle(element)
                                   ? triangle(tile.corners(element), label == Label::Terrain)
@@ -182,6 +183,7 @@ LevelGround::Solid LevelGround::triangle(const std::array<Vec3, 3>& corners, boo
     out.box = box_around(out.outline.span());
     out.low = std::min({a.z(), b.z(), c.z()});
     out.high = std::max({a.z(), b.z(), c.z()});
+    out.is_flat = out.low == out.high;
     out.is_level = is_terrain && normal.z() != 0;
     if (!out.is_level) return out;
     out.middle = normal.dot(a) / normal.z();
@@ -203,8 +205,22 @@ LevelGround::Solid LevelGround::primitive(const Shape& shape, bool is_terrain) c
     out.box = box_around(out.outline.span());
     out.low = box.min.z();
     out.high = out.middle = box.max.z();
+    out.is_flat = shape.kind == ShapeKind::Box && shape.pose.rotation == Mat3::Identity();
     out.is_level = is_terrain && is_upright;
     return out;
+}
+
+std::optional<double> LevelGround::flat_ground(const Vec2& place, double radius, double head_room)
+{
+    set_place(place, radius);
+    double top = -std::numeric_limits<double>::infinity();
+    for (const Solid& solid : solids_) top = std::max(top, solid.high);
+    const auto is_simple = [&](const Solid& solid) {
+        const double below = top - solid.high;
+        return solid.is_flat && (below == 0 || (below > flatness_ && below < head_room));
+    };
+    if (has_water_ || !std::all_of(solids_.begin(), solids_.end(), is_simple)) return std::nullopt;
+    return set_layer(top) && is_open_ ? std::optional(top) : std::nullopt;
 }
 
 /// Returns whether the top of a solid is everywhere near the height of the layer, as far as the robot may reach.

@@ -7,6 +7,7 @@
 #include <spawnfield/judge.h>
 
 #include <array>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -41,6 +42,12 @@ public:
     /// be proven there.
     bool set_layer(double height);
 
+    /// Looks at all that is at most `radius` from a place (m), at any height. Returns the height of the ground (m) if
+    /// it is there exactly level, without ends, and above all else, and if all else is flat and less than `head_room`
+    /// (m) below it. Then, on each vertical line whose own radius lies within this one, a robot that needs so much room
+    /// can stand on this layer only, and is_open() holds there.
+    std::optional<double> flat_ground(const Vec2& place, double radius, double head_room);
+
     /// Returns whether there is nothing but ground within the radius, up to above the robot.
     bool is_open() const { return is_open_; }
     /// Returns whether the robot stands at a yaw, as far as the geometry decides. False: not proven.
@@ -62,6 +69,7 @@ private:
         Outline outline;        ///< of its hull seen from above, relative to the place
         Rect box;               ///< around the outline
         double low, high;       ///< heights, m
+        bool is_flat;           ///< on all vertical lines that meet it, its top is exactly at `high`
         bool is_level = false;  ///< it is terrain, and its top is a plane
         double middle = 0;      ///< height of that plane at the place, m
         double steepness = 0;   ///< its slope
@@ -84,6 +92,7 @@ private:
     /// There is a face of a mesh that is filled although it has holes. It can contain the robot without any face below
     /// or beside it.
     bool is_unsealed_ = false, is_open_ = false;
+    bool has_water_ = false;  ///< there is water within the radius
     std::vector<const Solid*> ground_;
     /// Outlines of all else that may meet the robot, and edges at which the ground ends or may end; without those that
     /// are too far away at every yaw.

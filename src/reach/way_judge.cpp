@@ -12,6 +12,7 @@ namespace {
 
 constexpr double slope_arm = 1e-3;    // m: the slope of the ground at a column is measured over this length
 constexpr double limit_slack = 1e-9;  // m, in comparisons with limits
+constexpr double room_slack = 1e-4;   // m: more than any contact is off its surface
 constexpr int turn_pieces = 4;        // of a way on which the robot turns
 constexpr double large_tilt = 0.1;    // rad: if roll or pitch change by more, a way has as many pieces
 constexpr int kink_pieces = 4;        // of a straight way on which the robot is let down between its ends
@@ -81,9 +82,10 @@ Course WayJudge::course_of(const StateAt& from, const StateAt& to, Way way) cons
     return out;
 }
 
-void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out)
+void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out, DetailsStore& details)
 {
-    const std::size_t first = out.size();
+    const std::size_t first = details.size();
+    std::vector<double> heights;  // of the places with details
     const ColumnView column(columns_.column_at(at));
     bool has_solids = false;
     for (const double height : heights_within(column.layers, shared_.map.z_limits)) {
@@ -96,9 +98,16 @@ void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out)
         }
         is_level = is_level && level_.set_layer(height) && is_proven(column, {at.x(), at.y(), height});
         place.is_open = is_level && level_.is_open();
+        if (place.is_open) {
+            place.level_z = level_.z();
+            place.valid = HeadingSet(~0u);
+            out.push_back(place);
+            continue;
+        }
+        PlaceDetails& known = details.emplace_back();
         for (int heading = 0; heading < lattice_headings; ++heading) {
-            StatePose& state = place.poses[std::size_t(heading)];
-            if (place.is_open || (is_level && level_.stands(lattice_yaw(heading)))) {
+            StatePose& state = known.poses[std::size_t(heading)];
+            if (is_level && level_.stands(lattice_yaw(heading))) {
                 state = {.z = level_.z(), .is_exact = false};
             } else {
                 const SettledPose pose = stand_.judge(column, {at.x(), at.y(), height}, lattice_yaw(heading));
@@ -107,21 +116,42 @@ void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out)
             }
             place.valid |= HeadingSet(1u << heading);
         }
-        if (place.valid != 0) out.push_back(place);
+        if (place.valid == 0) {
+            details.pop_back();
+            continue;
+        }
+        place.details = &known;
+        heights.push_back(height);
+        out.push_back(place);
     }
     // Only now, because this looks up other columns.
-    for (PlaceStates& place : std::span(out).subspan(first))
-        for (int heading = 0; heading < lattice_headings && !place.is_open; ++heading)
-            place.slopes[std::size_t(heading)] = slope_at(at, place.ground, direction_of(heading));
+    for (std::size_t k = 0; k < heights.size(); ++k)
+        for (int heading = 0; heading < lattice_headings; ++heading)
+            details[first + k].slopes[std::size_t(heading)] = slope_at(at, heights[k], direction_of(heading));
+}
+
+std::optional<PlaceStates> WayJudge::place_of_all(const Vec2& low, const Vec2& high)
+{
+    if (!level_.is_possible()) return std::nullopt;
+    const double half = ((high - low) / 2).maxCoeff();
+    const auto ground = level_.flat_ground((low + high) / 2, half + radius_ + longest_way_, head_room_ - room_slack);
+    if (!ground) return std::nullopt;
+    // What LevelGround does not examine is the same for all columns, and known from those in the corners.
+    std::vector<PlaceStates> places;
+    DetailsStore details;
+    for (const Vec2& corner : {low, Vec2(low.x(), high.y()), Vec2(high.x(), low.y()), high})
+        find_places(corner, places, details);
+    const auto is_it = [&](const PlaceStates& place) { return place.is_open && place.ground == *ground; };
+    return places.size() == 4 && std::all_of(places.begin(), places.end(), is_it) ? std::optional(places[0])
+                                                                                  : std::nullopt;
 }
 
 /// Returns whether the next surface above a layer of a column leaves room for the robot. False: it stands there at no
 /// heading.
 bool WayJudge::has_head_room(const ColumnView& column, double height) const
 {
-    constexpr double slack = 1e-4;  // m; more than any contact is off its surface
     return head_room_ == 0 || std::none_of(column.spans.begin(), column.spans.end(), [&](const Span& span) {
-               return span.top > height + layer_tolerance && span.bottom < height + head_room_ - slack;
+               return span.top > height + layer_tolerance && span.bottom < height + head_room_ - room_slack;
            });
 }
 
@@ -194,7 +224,8 @@ std::optional<std::size_t> WayJudge::lowest_step(double length, double ground, s
 /// Returns the slope of the ground at a place in the direction of a heading.
 double WayJudge::slope_at(const Vec2& at, const PlaceStates& place, int heading)
 {
-    return place.is_open ? slope_at(at, place.ground, direction_of(heading)) : place.slopes[std::size_t(heading)];
+    return place.is_open ? slope_at(at, place.ground, direction_of(heading))
+                         : place.details->slopes[std::size_t(heading)];
 }
 
 /// Returns the slope of the ground at a place in a direction; 0 if it is steeper than the robot may stand on, or if it
@@ -222,8 +253,7 @@ bool WayJudge::can_go(const StateAt& from, const StateAt& to, Way way)
 {
     if (is_open(from, to)) return true;
     set_start(from.at);
-    const StatePose &pose = from.place.poses[std::size_t(from.heading)],
-                    &other = to.place.poses[std::size_t(to.heading)];
+    const StatePose pose = from.place.pose(from.heading), other = to.place.pose(to.heading);
     const Course course = course_of(from, to, way);
     if (pose.is_exact && other.is_exact)
         return can_follow(course, pose, other) || passes_kink(from, to, pose, other, way);
@@ -351,7 +381,7 @@ std::optional<SettledPose> WayJudge::go_prepared(const SettledPose& pose, const 
 /// Returns the settled pose of a state.
 StatePose WayJudge::exact_pose(const StateAt& state)
 {
-    const StatePose& known = state.place.poses[std::size_t(state.heading)];
+    const StatePose known = state.place.pose(state.heading);
     return known.is_exact ? known : settled(state.at, state.place.ground, state.heading);
 }
 

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -27,15 +28,27 @@ struct StatePose {
     bool is_exact = true;               ///< false: known to LevelGround::tolerance
 };
 
-/// The states of a place.
-struct PlaceStates {
-    double ground = 0;     ///< height of the layer, m
-    HeadingSet valid = 0;  ///< at which the robot stands
-    bool is_open = false;  ///< there is nothing but level ground, as far as any way leads
-    /// Slope of the ground in the direction of each heading, positive: upwards. Not known if the place is open.
-    std::array<double, lattice_headings> slopes{};
+/// What is known of the states of a place that is not open.
+struct PlaceDetails {
+    std::array<double, lattice_headings> slopes{};  ///< of the ground in the direction of each heading; > 0: upwards
     std::array<StatePose, lattice_headings> poses{};
 };
+
+/// The states of a place.
+struct PlaceStates {
+    double ground = 0;                      ///< height of the layer, m
+    HeadingSet valid = 0;                   ///< at which the robot stands
+    bool is_open = false;                   ///< there is nothing but level ground, as far as any way leads
+    double level_z = 0;                     ///< m: of the robot's origin, if the place is open
+    const PlaceDetails* details = nullptr;  ///< not if the place is open, or if only `ground` and `valid` are known
+
+    StatePose pose(int heading) const
+    {
+        return is_open ? StatePose{.z = level_z, .is_exact = false} : details->poses[std::size_t(heading)];
+    }
+};
+/// Details keep their addresses.
+using DetailsStore = std::deque<PlaceDetails>;
 
 /// A state with its place.
 struct StateAt {
@@ -65,8 +78,11 @@ public:
     /// `step`: of the grid, m.
     WayJudge(const Judge::Impl& shared, double max_step, const Lattice& lattice, double step);
 
-    /// Appends the places of a column.
-    void find_places(const Vec2& at, std::vector<PlaceStates>& out);
+    /// Appends the places of a column, and their details.
+    void find_places(const Vec2& at, std::vector<PlaceStates>& out, DetailsStore& details);
+    /// Returns the only place that each column of a rectangle has, if it is open and the same for all of them, as far
+    /// as that can be proven at once.
+    std::optional<PlaceStates> place_of_all(const Vec2& low, const Vec2& high);
 
     /// Returns how much the ground may rise on a way, m.
     double largest_rise(Way way, int heading) const { return rises_[std::size_t(way)][std::size_t(heading)]; }
