@@ -652,7 +652,7 @@ TEST_CASE("an interrupted sample, search or list of pairs says so in its summary
         "sample map -n 100000000 --stance level",
         "sample map -n 100000000",
         "search map -n 100000000 --min-distance 0 --max-failures 2000000000",
-        "sample map --pairs 20000 --min-path 1 --reach-step 0.4",
+        "sample map --pairs 3000 --min-path 1 --reach-step 0.4",
     };
     for (const std::string& arguments : cases) {
         CAPTURE(arguments);
