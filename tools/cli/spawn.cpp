@@ -443,8 +443,8 @@ void add_sample(CLI::App& app, ChosenCommand& chosen)
     add_spawn_groups(command, *args);
     command.footer(
         "Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random\n"
-        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --island largest --reach-step 0.3\n"
-        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 --pairs 20 --min-path 5 --reach-step 0.3\n"
+        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --island largest --reach-step 0.4\n"
+        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 --pairs 20 --min-path 5 --reach-step 0.4\n"
         "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --near 'cube*' 0.5:1 --facing 'cube*'\n"
         "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 --fill --min-distance 3\n"
         "  spawnfield sample /tmp/training --fleet maps/training/fleet.yaml -o /tmp/fleet.csv");
