@@ -249,6 +249,13 @@ std::vector<Robot> robots_of_all_kinds()
     return out;
 }
 
+/// Returns half of the side of a furnished() floor for a robot, m.
+double half_of_world(const Robot& robot)
+{
+    const Vec3 size = robot.bounds().max - robot.bounds().min;
+    return 2 * std::max(size.x(), size.y());
+}
+
 /// Counts the states of a map that LevelGround proves, and checks them with Judge::settle.
 std::size_t check_proven(const TestMap& map, const Robot& robot, double step, const JudgeOptions& limits = {})
 {
@@ -478,8 +485,7 @@ TEST_CASE("states that are proven without letting the robot down are valid")
     for (std::uint64_t seed = 1; seed <= compare::scene_count / 10; ++seed) {
         CAPTURE(seed);
         const Robot& robot = robots[seed % robots.size()];
-        const Vec3 size = robot.bounds().max - robot.bounds().min;
-        const double half = 2 * std::max(size.x(), size.y());
+        const double half = half_of_world(robot);
         proven[robot.name] += check_proven(map_of(furnished(seed, half), 0.1), robot, half / 2.3);
     }
     if (!compare::all_scenes) return;
@@ -507,8 +513,7 @@ TEST_CASE("valid poses have the least head room of their robot, and not much mor
     for (std::uint64_t seed = 1; seed <= compare::scene_count / 10; ++seed) {
         CAPTURE(seed);
         const Robot& robot = robots[seed % robots.size()];
-        const Vec3 size = robot.bounds().max - robot.bounds().min;
-        const double half = 2 * std::max(size.x(), size.y());
+        const double half = half_of_world(robot);
         const Map map = map_of(furnished(seed, half), 0.1);
         const Judge judge(map, robot);
         const double least = least_head_room(robot, judge.options().stand.max_slope);

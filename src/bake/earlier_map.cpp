@@ -5,6 +5,7 @@
 #include "geometry/geometry_impl.h"
 #include "geometry/part_globs.h"
 #include "map/map_yaml.h"
+#include "scene/label_rules.h"
 
 #include <spawnfield/error.h>
 
@@ -136,15 +137,6 @@ void check_options(const fs::path& folder, const Map& old, const Map& now, const
                number(now.occupancy_resolution) + " m", "--occupancy-resolution");
 }
 
-/// Returns the names, at most 8 of them.
-std::string listed_names(const std::vector<std::string>& names)
-{
-    constexpr std::size_t shown = 8;
-    std::string out;
-    for (std::size_t i = 0; i < std::min(shown, names.size()); ++i) out += (i > 0 ? ", " : "") + names[i];
-    return out + (names.size() > shown ? ", …" : "");
-}
-
 /// Throws ArgumentError for a glob that matches nothing in either state.
 void check_globs(const Geometry& now, const std::vector<std::string>& globs, const Marks& is_used)
 {
@@ -177,7 +169,7 @@ EarlierState earlier_state(const fs::path& folder, const fs::path& scene_file, c
         throw FileError(scene_file.string(),
                         (parts.wrong.size() == 1 ? "a part differs from " : "parts differ from ") + folder.string() +
                             ", and --update does not name " + (parts.wrong.size() == 1 ? "it: " : "them: ") +
-                            listed_names(parts.wrong) +
+                            first_of(parts.wrong, 8) +
                             "; name all changed parts (--update '*' finds them), or bake in full (without --update)");
     check_options(folder, old, now, options);
     if (old.bounds.min != now.bounds.min || old.bounds.max != now.bounds.max)

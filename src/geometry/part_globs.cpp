@@ -1,6 +1,7 @@
 #include "geometry/part_globs.h"
 
 #include "scene/glob.h"
+#include "scene/label_rules.h"
 
 namespace spawnfield {
 namespace {
@@ -15,6 +16,17 @@ bool matches_name(const std::string& glob, const std::string& name)
         if (end == std::string::npos) return false;
         from = end + 2;
     }
+}
+
+constexpr std::size_t shown_names = 8;
+constexpr const char* advice = " (`spawnfield info MAP` lists them; * stands for any text)";
+
+Names part_names(const Geometry& geometry)
+{
+    Names out;
+    for (std::size_t part = 0; part < geometry.parts().size(); ++part)
+        if (!geometry.is_removed(part)) out.push_back(geometry.parts()[part].name);
+    return out;
 }
 
 }  // namespace
@@ -40,15 +52,20 @@ std::vector<std::size_t> face_groups_that_match(const Geometry& geometry, const 
 
 std::string no_part_matches(const Geometry& geometry, const std::string& glob)
 {
-    constexpr std::size_t shown = 8;
-    std::string names;
-    std::size_t count = 0;
-    for (std::size_t part = 0; part < geometry.parts().size(); ++part)
-        if (!geometry.is_removed(part) && ++count <= shown)
-            names += (count > 1 ? ", " : "") + geometry.parts()[part].name;
+    const Names names = part_names(geometry);
     return "\"" + glob + "\" matches no part of the map; " +
-           (count == 0 ? "it has none" : "there are " + names + (count > shown ? ", …" : "")) +
-           " (`spawnfield info MAP` lists them; * stands for any text)";
+           (names.empty() ? "it has none" : "there are " + first_of(names, shown_names)) + advice;
+}
+
+std::string no_name_matches(const Geometry& geometry, const std::string& glob)
+{
+    std::vector<FaceGroup> groups;
+    for (const FaceGroup& group : geometry.face_groups())
+        if (!geometry.is_removed(group.part)) groups.push_back(group);
+    const Names names = names_of(groups);
+    if (names.empty()) return no_part_matches(geometry, glob);
+    return "\"" + glob + "\" matches no part of the map, and no node or material of its meshes; there are the parts " +
+           first_of(part_names(geometry), shown_names) + " and the names " + first_of(names, shown_names) + advice;
 }
 
 }  // namespace spawnfield

@@ -14,4 +14,7 @@ std::vector<std::size_t> face_groups_that_match(const Geometry& geometry, const 
 /// Returns the text of an error: a glob matches no part.
 std::string no_part_matches(const Geometry& geometry, const std::string& glob);
 
+/// Returns the text of an error: a glob matches no part, node or material.
+std::string no_name_matches(const Geometry& geometry, const std::string& glob);
+
 }  // namespace spawnfield

@@ -22,35 +22,6 @@ std::string point_text(const Vec3& point)
     return number(point.x()) + "," + number(point.y()) + "," + number(point.z());
 }
 
-/// Returns the names, at most 8 of them.
-std::string listed(const std::vector<std::string>& names)
-{
-    constexpr std::size_t shown = 8;
-    std::string out;
-    for (std::size_t k = 0; k < std::min(shown, names.size()); ++k) out += (k > 0 ? ", " : "") + names[k];
-    return out + (names.size() > shown ? ", …" : "");
-}
-
-/// Returns the text of an error: a glob selects nothing.
-std::string nothing_matches(const Geometry& geometry, const std::string& glob)
-{
-    std::vector<std::string> parts, names;
-    const auto add = [](const std::string& name, std::vector<std::string>& to) {
-        if (!name.empty() && std::find(to.begin(), to.end(), name) == to.end()) to.push_back(name);
-    };
-    for (const FaceGroup& group : geometry.face_groups()) {
-        if (geometry.is_removed(group.part)) continue;
-        add(group.node, names);
-        add(group.material, names);
-    }
-    if (names.empty()) return no_part_matches(geometry, glob);
-    for (std::size_t part = 0; part < geometry.parts().size(); ++part)
-        if (!geometry.is_removed(part)) add(geometry.parts()[part].name, parts);
-    return "\"" + glob + "\" matches no part of the map, and no node or material of its meshes; there are the parts " +
-           listed(parts) + " and the names " + listed(names) +
-           " (`spawnfield info MAP` lists them; * stands for any text)";
-}
-
 }  // namespace
 
 std::string to_string(const PlaceRules& rules)
@@ -76,7 +47,7 @@ Selection selection_of(const Geometry& geometry, const std::vector<std::string>&
     for (const std::string& glob : globs) {
         const std::vector<std::size_t> parts = parts_that_match(geometry, glob),
                                        groups = face_groups_that_match(geometry, glob);
-        if (parts.empty() && groups.empty()) throw ArgumentError(rule + " " + nothing_matches(geometry, glob));
+        if (parts.empty() && groups.empty()) throw ArgumentError(rule + " " + no_name_matches(geometry, glob));
         for (const std::size_t part : parts) out.parts[part] = 1;
         for (const std::size_t group : groups) out.groups[group] = 1;
     }

@@ -84,8 +84,8 @@ Course WayJudge::course_of(const StateAt& from, const StateAt& to, Way way) cons
 
 void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out, DetailsStore& details)
 {
-    const std::size_t first = details.size();
-    std::vector<double> heights;  // of the places with details
+    const std::size_t first = out.size();
+    std::size_t next = details.size();  // of the first place with details
     const ColumnView column(columns_.column_at(at));
     bool has_solids = false;
     for (const double height : heights_within(column.layers, shared_.map.z_limits)) {
@@ -121,13 +121,15 @@ void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out, Detail
             continue;
         }
         place.details = &known;
-        heights.push_back(height);
         out.push_back(place);
     }
     // Only now, because this looks up other columns.
-    for (std::size_t k = 0; k < heights.size(); ++k)
+    for (const PlaceStates& place : std::span(out).subspan(first)) {
+        if (place.is_open) continue;
+        PlaceDetails& known = details[next++];
         for (int heading = 0; heading < lattice_headings; ++heading)
-            details[first + k].slopes[std::size_t(heading)] = slope_at(at, heights[k], direction_of(heading));
+            known.slopes[std::size_t(heading)] = slope_at(at, place.ground, direction_of(heading));
+    }
 }
 
 std::optional<PlaceStates> WayJudge::place_of_all(const Vec2& low, const Vec2& high)
