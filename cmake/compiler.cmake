@@ -53,12 +53,19 @@ target_compile_options(spawnfield_options INTERFACE
   $<$<BOOL:${SPAWNFIELD_WERROR}>:-Werror>)
 # Eigen's asserts cost more than ours. They stay on in debug builds, whose tests are enough to find such errors.
 target_compile_definitions(spawnfield_options INTERFACE $<$<NOT:$<CONFIG:Debug>>:EIGEN_NO_DEBUG>)
+
+# A sanitizer looks for faults in the library, its modules and the program. Only these link spawnfield_sanitizer; all
+# other code compiles to the objects of the release, which ccache has or will need again.
+add_library(spawnfield_sanitizer INTERFACE)
 if(SPAWNFIELD_SANITIZE)
-  add_compile_options(-fsanitize=${SPAWNFIELD_SANITIZE} -fno-omit-frame-pointer)
-  add_link_options(-fsanitize=${SPAWNFIELD_SANITIZE})
-  # In instrumented code gcc 12 warns about its own <regex>.
-  target_compile_options(spawnfield_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  set(sanitizer_options -O1 -g1 -fsanitize=${SPAWNFIELD_SANITIZE} -fno-omit-frame-pointer
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # in instrumented code gcc 12 warns about its own <regex>
   if(SPAWNFIELD_SANITIZE MATCHES "undefined")
-    add_compile_options(-fno-sanitize-recover=undefined)
+    # These checks of each access to memory double the time of the compiler and of the tests. The address sanitizer
+    # finds null pointers and accesses outside of objects, too.
+    list(APPEND sanitizer_options
+      -fno-sanitize-recover=undefined -fno-sanitize=null,alignment,object-size,vptr)
   endif()
+  target_compile_options(spawnfield_sanitizer INTERFACE ${sanitizer_options})
+  add_link_options(-fsanitize=${SPAWNFIELD_SANITIZE})
 endif()

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "paths.h"
+#include "this_build.h"
 #include "catch.h"
 #include "program.h"
 

@@ -2,6 +2,7 @@
 #include "shared_scenes.h"
 #include "slow.h"
 #include "test_map.h"
+#include "this_build.h"
 
 #include <algorithm>
 #include <iostream>
@@ -10,11 +11,7 @@ using namespace spawnfield;
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::size_t spawn_count = 20;  // the decisions below are 20 times slower with them
-#else
-constexpr std::size_t spawn_count = 200;
-#endif
+const std::size_t spawn_count = is_slow_build() ? 20 : 200;
 
 /// A file as its makers publish it, and how a robot should stand there.
 struct Case {

@@ -1,5 +1,5 @@
 #include "catch.h"
-#include "paths.h"
+#include "this_build.h"
 #include "program.h"
 
 #include <spawnfield/poses.h>

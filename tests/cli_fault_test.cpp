@@ -1,4 +1,4 @@
-#include "paths.h"
+#include "this_build.h"
 #include "catch.h"
 #include "program.h"
 

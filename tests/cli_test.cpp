@@ -1,4 +1,4 @@
-#include "paths.h"
+#include "this_build.h"
 #include "arena.h"
 
 #include <spawnfield/map.h>
@@ -73,7 +73,7 @@ TEST_CASE("every command has help with an example, and the program prints its ve
     CHECK(version.out == spawnfield::version() + "\n");
 }
 
-TEST_CASE("every example works after the steps of the README, and does not change their files")
+TEST_CASE("every example works after the steps of the README, and does not change their files", "[slow]")
 {
     const TempFolder folder;  // stands for /tmp and for the source folder
     fs::create_symlink(program_file(), folder / "spawnfield");

@@ -21,7 +21,7 @@ using compare::all_scenes, compare::scene_count;
 /// Checks that some poses were proven and some were not; without both, the comparison would mean nothing.
 void check_shares(const compare::Tally& tally, double least_proven)
 {
-    if (!all_scenes) return;
+    if (!all_scenes()) return;
     CAPTURE(tally.asked, tally.exact);
     CHECK(tally.exact > 0);
     CHECK(double(tally.exact) <= (1 - least_proven) * double(tally.asked));
@@ -29,7 +29,7 @@ void check_shares(const compare::Tally& tally, double least_proven)
 
 void check_verdicts(const compare::Tally& tally, const std::vector<Verdict>& expected, std::size_t least)
 {
-    if (!all_scenes) return;
+    if (!all_scenes()) return;
     for (const Verdict verdict : expected) {
         INFO(to_string(verdict));
         CHECK(tally.verdicts[verdict] >= least);
@@ -145,7 +145,7 @@ compare::Tally real_rasters(const TestMap& map, const compare::TwoJudges& judges
 TEST_CASE("every query gives the exhaustive verdicts, pose by pose, in random hard scenes")
 {
     compare::CaseTally all;
-    for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
+    for (std::uint64_t seed = 1; seed <= scene_count(); ++seed) {
         const HardCase hard = hard_case(seed);
         const compare::CaseTally tally = compare::of_case(hard);
         all.add(tally);
@@ -173,7 +173,7 @@ TEST_CASE("every query gives the exhaustive verdicts, pose by pose, in random ha
     check_shares(all.snap, 0.2);
     check_shares(all.collisions, 0.1);
     check_shares(all.check, 0.1);
-    if (all_scenes)
+    if (all_scenes())
         CHECK(all.check.proven_valid > 1000);  // naming the part that a blocked pose hits needs an exact check
 }
 
@@ -211,7 +211,7 @@ TEST_CASE("hard scenes contain everything that scenes can contain, and their rob
 TEST_CASE("the exhaustive answers agree with an independent decision in random hard scenes")
 {
     compare::Tally all;
-    for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
+    for (std::uint64_t seed = 1; seed <= scene_count(); ++seed) {
         const compare::Tally tally = compare::independently(hard_case(seed, {.razor = false}));
         all.add(tally);
         INFO("scene " << seed << ": " << tally.first);
@@ -224,7 +224,7 @@ TEST_CASE("the exhaustive answers agree with an independent decision in random h
 TEST_CASE("with the mask a larger robot never gains a valid pose")
 {
     std::size_t kept = 0, lost = 0;
-    for (std::uint64_t seed = 1; seed <= scene_count / 3; ++seed) {
+    for (std::uint64_t seed = 1; seed <= scene_count() / 3; ++seed) {
         const HardCase hard = hard_case(seed);
         const TestMap map = compare::map_of_case(hard);
         Robot longer = hard.robot;
@@ -239,14 +239,14 @@ TEST_CASE("with the mask a larger robot never gains a valid pose")
             lost += becomes.lost;
         }
     }
-    if (all_scenes) CHECK((kept > 5000 && lost > 1000));
+    if (all_scenes()) CHECK((kept > 5000 && lost > 1000));
 }
 
 TEST_CASE("a finer mask changes no verdict, only the number of exact checks")
 {
     std::size_t valid = 0;
     std::uint64_t fine_checks = 0, coarse_checks = 0;
-    for (std::uint64_t seed = 1; seed <= scene_count / 3; ++seed) {
+    for (std::uint64_t seed = 1; seed <= scene_count() / 3; ++seed) {
         const HardCase hard = hard_case(seed);
         const TestMap coarse = map_at(hard.scene, 3 * hard.resolution, hard.map_bounds);
         RasterOptions options = dyadic_raster(coarse, hard);
@@ -265,14 +265,14 @@ TEST_CASE("a finer mask changes no verdict, only the number of exact checks")
             }
         }
     }
-    if (all_scenes) CHECK(valid > 3000);
-    if (all_scenes) CHECK(fine_checks < coarse_checks);
+    if (all_scenes()) CHECK(valid > 3000);
+    if (all_scenes()) CHECK(fine_checks < coarse_checks);
 }
 
 TEST_CASE("with the mask a mirrored scene mirrors the verdicts")
 {
     std::size_t valid = 0, other = 0;
-    for (std::uint64_t seed = 1; seed <= scene_count / 3; ++seed) {
+    for (std::uint64_t seed = 1; seed <= scene_count() / 3; ++seed) {
         const HardCase hard = hard_case(seed, {.razor = false});
         const TestMap map = map_at(hard.scene, hard.resolution), mirror = map_at(mirrored(hard.scene), hard.resolution);
         RasterOptions options = dyadic_raster(map, hard);
@@ -289,13 +289,13 @@ TEST_CASE("with the mask a mirrored scene mirrors the verdicts")
         valid += valid_count(here.poses);
         other += here.poses.size() - valid_count(here.poses);
     }
-    if (all_scenes) CHECK((valid > 3000 && other > 3000));
+    if (all_scenes()) CHECK((valid > 3000 && other > 3000));
 }
 
 TEST_CASE("with the mask a scene moved by whole metres keeps its verdicts")
 {
     std::size_t valid = 0, other = 0;
-    for (std::uint64_t seed = 1; seed <= scene_count / 3; ++seed) {
+    for (std::uint64_t seed = 1; seed <= scene_count() / 3; ++seed) {
         const HardCase hard = hard_case(seed, {.razor = false});
         const Scene scene = on_binary_lattice(hard.scene);
         const Vec3 by = {double(seed % 7) * 157 - 300, 1000 - double(seed % 5) * 321, double(seed % 3) * 64};
@@ -310,7 +310,7 @@ TEST_CASE("with the mask a scene moved by whole metres keeps its verdicts")
         valid += valid_count(here.poses);
         other += here.poses.size() - valid_count(here.poses);
     }
-    if (all_scenes) CHECK((valid > 3000 && other > 3000));
+    if (all_scenes()) CHECK((valid > 3000 && other > 3000));
 }
 
 TEST_CASE("the mask never proves a pose free if a yaw of the set collides, nor blocked if a yaw is free")
@@ -318,7 +318,7 @@ TEST_CASE("the mask never proves a pose free if a yaw of the set collides, nor b
     compare::Tally all;
     std::size_t lies = 0, proven_for_all_yaws = 0;
     std::array<std::size_t, 3> proven{};
-    for (std::uint64_t seed = 1; seed <= scene_count / 2; ++seed) {
+    for (std::uint64_t seed = 1; seed <= scene_count() / 2; ++seed) {
         const HardCase hard = hard_case(seed);
         const TestMap map = compare::map_of_case(hard);
         const compare::TwoJudges judges(map, hard.robot);
@@ -350,14 +350,14 @@ TEST_CASE("the mask never proves a pose free if a yaw of the set collides, nor b
     }
     CHECK(lies == 0);
     check_verdicts(all, {Verdict::Valid, Verdict::Collision}, 5000);
-    if (all_scenes)
+    if (all_scenes())
         CHECK((proven[std::size_t(Proof::Free)] > 2000 && proven[std::size_t(Proof::Blocked)] > 2000 &&
                proven_for_all_yaws > 2000));
 }
 
 TEST_CASE("with a mask that is made on first use, rasters are the same bytes with any number of threads")
 {
-    for (std::uint64_t seed = 1; seed <= scene_count / 10; ++seed) {
+    for (std::uint64_t seed = 1; seed <= scene_count() / 10; ++seed) {
         const HardCase hard = hard_case(seed);
         std::string expected;
         for (const int threads : {1, 2, 8}) {
@@ -383,7 +383,7 @@ TEST_CASE("with a mask that is made on first use, rasters are the same bytes wit
     }
 }
 
-TEST_CASE("every query gives the exhaustive verdicts in real scenes", "[real]")
+TEST_CASE("every query gives the exhaustive verdicts in real scenes", "[real][slow]")
 {
     const auto folder = shared_scenes();
     if (!folder) return;

@@ -310,7 +310,7 @@ TEST_CASE("the ends of a convoy are checked before islands, whose words in the s
     CHECK(std::ranges::any_of(names_in(arena / "map"), is_graph));
 }
 
-TEST_CASE("the example fleet of the training arena is complete")
+TEST_CASE("the example fleet of the training arena is complete", "[slow]")
 {
     const Arena arena;
     const ProgramRun run = arena("sample map --seed 2 --reach-step 0.4 --fleet '" + source_folder() +

@@ -227,7 +227,7 @@ TEST_CASE("robots keep the distances of the fleet, of their kind and between kin
     CHECK(closest[1][1] < 1.2);  // no other distance applies to it
 }
 
-TEST_CASE("after a fill, each valid pose of the raster is too near to a robot or overlaps one")
+TEST_CASE("after a fill, each valid pose of the raster is too near to a robot or overlaps one", "[slow]")
 {
     std::uint64_t all = 0;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {

@@ -17,12 +17,7 @@ using enum Verdict;
 
 namespace {
 
-#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-constexpr std::uint64_t scene_count = 60;
-#else
-constexpr std::uint64_t scene_count = 10;  // 60 would take many minutes without optimisation or with a sanitizer
-#endif
-constexpr bool all_scenes = scene_count >= 60;
+const std::uint64_t scene_count = is_slow_build() ? 10 : 60;
 
 constexpr double off = std::numeric_limits<double>::infinity();
 
@@ -352,7 +347,7 @@ TEST_CASE("footings only remove valid poses, fewer with a larger limit, and need
     }
     CHECK(changed == 0);
     CHECK(regained == 0);
-    if (all_scenes) CHECK((steep > 1000 && unstable > 1000 && valid > 1000));
+    if (!is_slow_build()) CHECK((steep > 1000 && unstable > 1000 && valid > 1000));
 }
 
 TEST_CASE("a mirrored scene mirrors the footings")
@@ -377,7 +372,7 @@ TEST_CASE("a mirrored scene mirrors the footings")
         }
     }
     CHECK(differences == 0);
-    if (all_scenes) CHECK((valid > 300 && footings > 300));
+    if (!is_slow_build()) CHECK((valid > 300 && footings > 300));
 }
 
 TEST_CASE("footings agree with their definition in random scenes")
@@ -406,7 +401,7 @@ TEST_CASE("footings agree with their definition in random scenes")
     }
     std::cout << "footings: " << seen[std::size_t(Valid)] << " valid, " << seen[std::size_t(Steep)] << " steep, "
               << seen[std::size_t(Unstable)] << " unstable, " << undecided << " too close to call\n";
-    if (all_scenes)
+    if (!is_slow_build())
         CHECK((seen[std::size_t(Valid)] > 1000 && seen[std::size_t(Steep)] > 100 && seen[std::size_t(Unstable)] > 100));
 }
 
@@ -419,7 +414,7 @@ TEST_CASE("with footings every query gives the exhaustive verdicts in random har
         INFO("scene " << seed << ": " << tally.sum().first);
         CHECK(tally.sum().differences == 0);
     }
-    if (!all_scenes) return;
+    if (is_slow_build()) return;
     for (const compare::Tally& tally : {all.raster_2d, all.raster_3d, all.check})
         for (const Verdict verdict : {Steep, Unstable, Valid}) {
             INFO(to_string(verdict));
@@ -455,7 +450,8 @@ TEST_CASE("samples have a footing, and footings are the same bytes with any numb
     }
 }
 
-TEST_CASE("where everything is too steep, sample finds nothing, but does not call the region full without a proof")
+TEST_CASE("where everything is too steep, sample finds nothing, but does not call the region full without a proof",
+          "[slow]")
 {
     const TestMap map = map_of(slope_scene(20));
     const Robot robot = load_robot("box:0.4,0.4,0.3");

@@ -231,7 +231,8 @@ TEST_CASE("of equally long ways ahead, the longer one back decides, then the fir
     CHECK(is_same_angle(rest_at(map, Vec2::Zero(), along).yaw, pi / 2));
 }
 
-TEST_CASE("the headings along a way and farthest from obstacles are those that a comparison of all headings finds")
+TEST_CASE("the headings along a way and farthest from obstacles are those that a comparison of all headings finds",
+          "[slow]")
 {
     constexpr int count = 8;
     std::size_t chosen_along = 0, chosen_clear = 0;

@@ -1,5 +1,4 @@
 #include "catch.h"
-#include "compare.h"
 #include "shared_scenes.h"
 #include "test_map.h"
 
@@ -47,24 +46,22 @@ std::vector<FloorScene> scenes()
 {
     const Robot small = load_robot("box:0.3,0.3,0.2"), large = husky();
     const Bounds block{{-60, -60, -5}, {-10, -10, 30}};
-    std::vector<FloorScene> out{
+    return {
         {"warehouse/worlds/small_warehouse.world", large, 0.25, between(0, 0.05), 1, {}, false},
         // Some voxels of the scanned floor are one higher or lower. The ceiling is at 2.7 m, desks are at 0.7 m.
         {"octomap/scene.yaml", small, 0.25, between(-0.13, 0.13), 1},
+        {"mine/scene.yaml", large, 1, between(0, 0.18), 1},
+        // The halls and stairs are below 17 m, and the tops of walls and towers above 20 m.
+        {"dungeon/scene.yaml", large, 0.6, between(-0.1, 17), 10},
+        {"parking_garage/scene.yaml", large, 1, is_in_garage, 7},
+        // Streets and the open ground beside them; sidewalks are 0.1 m higher.
+        {"city/worlds/simple_city.world", large, 0.5, between(5, 5.15), 1, block},
     };
-    if (!compare::all_scenes) return out;
-    out.push_back({"mine/scene.yaml", large, 1, between(0, 0.18), 1});
-    // The halls and stairs are below 17 m, and the tops of walls and towers above 20 m.
-    out.push_back({"dungeon/scene.yaml", large, 0.6, between(-0.1, 17), 10});
-    out.push_back({"parking_garage/scene.yaml", large, 1, is_in_garage, 7});
-    // Streets and the open ground beside them; sidewalks are 0.1 m higher.
-    out.push_back({"city/worlds/simple_city.world", large, 0.5, between(5, 5.15), 1, block});
-    return out;
 }
 
 }  // namespace
 
-TEST_CASE("on the largest islands of real scenes, robots stand on floors only")
+TEST_CASE("on the largest islands of real scenes, robots stand on floors only", "[slow]")
 {
     const auto folder = shared_scenes();
     if (!folder) return;

@@ -6,10 +6,8 @@
 
 #include <tbb/global_control.h>
 
-#ifdef __SANITIZE_ADDRESS__
-// assimp leaks memory when it rejects a damaged file.
+// For the address sanitizer: assimp leaks memory when it rejects a damaged file.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
-#endif
 
 namespace {
 

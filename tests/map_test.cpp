@@ -1,4 +1,4 @@
-#include "paths.h"
+#include "this_build.h"
 #include "catch.h"
 #include "geometry/geometry_impl.h"
 #include "temp_folder.h"

@@ -1,6 +1,6 @@
 #include "catch.h"
 #include "mesh_text.h"
-#include "paths.h"
+#include "this_build.h"
 #include "program.h"
 #include "random_scene.h"
 #include "scene_text.h"

@@ -1,4 +1,4 @@
-#include "paths.h"
+#include "this_build.h"
 #include "base/cell_blocks.h"
 #include "base/pgm.h"
 #include "catch.h"

@@ -111,7 +111,7 @@ TEST_CASE("pairs are the same at any number of threads, and differ between seeds
     CHECK(one != text(1, 4));
 }
 
-TEST_CASE("pairs that are stopped are the first ones of the whole list")
+TEST_CASE("pairs that are stopped are the first ones of the whole list", "[slow]")
 {
     const Rooms rooms;
     PairOptions options{.spawns = {.count = 400, .random_yaw = true, .seed = 5}, .min_path = 1, .max_path = 4};
@@ -135,7 +135,7 @@ TEST_CASE("pairs that are stopped are the first ones of the whole list")
 TEST_CASE("goals are uniform by area among those that fit")
 {
     const Rooms rooms;
-    const std::size_t count = compare::all_scenes ? 3000 : 700;
+    const std::size_t count = compare::all_scenes() ? 3000 : 700;
     const PairList list = rooms({.spawns = {.count = count, .random_yaw = true, .seed = 1}});
     REQUIRE(list.pairs.size() == count);
     // Without limits, goals fill the room of the start. The left one has the width 4 m, less margins.

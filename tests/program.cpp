@@ -1,4 +1,4 @@
-#include "paths.h"
+#include "this_build.h"
 #include "program.h"
 
 #include <catch2/catch.hpp>

@@ -119,7 +119,7 @@ TEST_CASE("settled spawns of a robot with its origin between its wheels are vali
     CHECK(over_crests >= 5);
 }
 
-TEST_CASE("check in real scenes agrees with the independent decision")
+TEST_CASE("check in real scenes agrees with the independent decision", "[slow]")
 {
     const auto folder = shared_scenes();
     if (!folder) return;

@@ -49,21 +49,21 @@ void compare_settled(const Judge& judge, double columns, double yaw, Compared& o
 TEST_CASE("settled rasters of random scenes are the same with --exhaustive")
 {
     Compared all;
-    for (std::uint64_t seed = 1; seed <= compare::scene_count; ++seed) {
+    for (std::uint64_t seed = 1; seed <= compare::scene_count(); ++seed) {
         CAPTURE(seed);
         const HardCase hard = hard_case(seed);
         const TestMap map = compare::map_of_case(hard);
         compare_settled(Judge(map, hard.robot, {.max_height = hard.max_height}), 40, hard.yaws[0], all);
     }
     CHECK(all.valid_as_given == all.counts[Verdict::Valid]);
-    if (!compare::all_scenes) return;
+    if (!compare::all_scenes()) return;
     for (const Verdict verdict : {Verdict::Valid, Verdict::Collision, Verdict::Unstable}) {
         CAPTURE(to_string(verdict));
         CHECK(all.counts[verdict] >= 200);
     }
 }
 
-TEST_CASE("settled rasters of real scenes are the same with --exhaustive")
+TEST_CASE("settled rasters of real scenes are the same with --exhaustive", "[slow]")
 {
     const auto folder = shared_scenes();
     if (!folder) return;

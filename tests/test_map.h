@@ -1,6 +1,6 @@
 #pragma once
 
-#include "paths.h"
+#include "this_build.h"
 #include "random_scene.h"
 
 #include <spawnfield/bake.h>

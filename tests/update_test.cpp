@@ -1,6 +1,6 @@
 #include "catch.h"
 #include "compare.h"
-#include "paths.h"
+#include "this_build.h"
 #include "program.h"
 #include "random_scene.h"
 
@@ -121,7 +121,7 @@ using Names = std::vector<std::string>;
 
 namespace {
 
-constexpr std::uint64_t step = compare::all_scenes ? 1 : 6;
+const std::uint64_t step = compare::all_scenes() ? 1 : 6;
 
 /// Makes random changes, each of them forth and back. Returns how many were baked in full.
 std::size_t check_random_changes(std::uint64_t first, std::uint64_t last)

@@ -1,4 +1,4 @@
-#include "paths.h"
+#include "this_build.h"
 
 const std::string& source_folder()
 {
@@ -11,6 +11,8 @@ const std::string& program_file()
     static const std::string file = SPAWNFIELD_CLI;
     return file;
 }
+
+bool is_slow_build() { return SLOW_BUILD != 0; }
 
 const std::string& python_file()
 {
