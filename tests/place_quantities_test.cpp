@@ -1,5 +1,6 @@
 #include "arena.h"
 #include "test_map.h"
+#include "this_build.h"
 
 #include <spawnfield/place_quantities.h>
 #include <spawnfield/robot_parts.h>
@@ -180,7 +181,7 @@ TEST_CASE("the density of preferred spawns is proportional to the preferred quan
 TEST_CASE("measured and preferred spawns have the same bytes with 1, 2 and 8 threads")
 {
     const Judge judge(training_map(), husky());
-    SampleOptions options{.count = 200, .seed = 2};
+    SampleOptions options{.count = is_slow_build() ? 50u : 200u, .seed = 2};
     options.measures = {
         .columns = {all_place_quantities.begin(), all_place_quantities.end() - 1},  // room needs a graph: path_test.cpp
         .prefer = {{PlaceQuantity::Clearance, 0.5}, {PlaceQuantity::Margin, 1}, {PlaceQuantity::View, 1}}};

@@ -113,7 +113,7 @@ std::vector<Verdict> verdicts_of_poses(const Judge& judge, const std::vector<Pos
 
 }  // namespace
 
-TEST_CASE("a repair is the nearest valid grid pose of its definition, in random scenes")
+TEST_CASE("a repair is the nearest valid grid pose of its definition, in random scenes", "[slow]")
 {
     const Stance stance = GENERATE(Stance::Level, Stance::Settled);
     std::size_t moved = 0, turned = 0, none = 0;

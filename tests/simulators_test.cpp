@@ -438,7 +438,8 @@ TEST_CASE("patches are on the ground below the spawns")
     }
 }
 
-TEST_CASE("the commands of the tour, of each simulator's page and of the page on floors work as they are written")
+TEST_CASE("the commands of the tour, of each simulator's page and of the page on floors work as they are written",
+          "[slow]")
 {
     const TempFolder folder;  // stands for /tmp and for the source folder
     fs::create_symlink(program_file(), folder / "spawnfield");

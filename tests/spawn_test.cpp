@@ -525,7 +525,7 @@ TEST_CASE("two floors above each other are filled equally")
     CHECK(room_left(judge, options, list, 200) == 0);
 }
 
-TEST_CASE("cells that are proven closed contain no valid pose, in hard scenes")
+TEST_CASE("cells that are proven closed contain no valid pose, in hard scenes", "[slow]")
 {
     std::size_t closed = 0, open = 0, valid = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -586,7 +586,8 @@ TEST_CASE("counts and distances beyond their limits are refused")
     CHECK_THROWS_WITH(search(judge, options), "search: max_failures is 0, needs >= 1");
 }
 
-TEST_CASE("few spawns in a map of many tiles are the exhaustive ones, with coarse cells and more exact checks")
+TEST_CASE("few spawns in a map of many tiles are the exhaustive ones, with coarse cells and more exact checks",
+          "[slow]")
 {
     const TestMap fine = map_of(load_scene(source_folder() + "/maps/training/scene.yaml"), 0.02),
                   coarse = map_of(load_scene(source_folder() + "/maps/training/scene.yaml"), 0.1);
