@@ -1,5 +1,7 @@
 #include "this_build.h"
 
+bool is_slow_build() { return SLOW_BUILD != 0; }
+
 const std::string& source_folder()
 {
     static const std::string folder = SPAWNFIELD_SOURCE;
@@ -11,8 +13,6 @@ const std::string& program_file()
     static const std::string file = SPAWNFIELD_CLI;
     return file;
 }
-
-bool is_slow_build() { return SLOW_BUILD != 0; }
 
 const std::string& python_file()
 {
