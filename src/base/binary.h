@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -32,6 +35,21 @@ public:
         static_assert(std::is_trivially_copyable_v<T>);
         put(std::uint64_t(values.size()));
         bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    }
+    /// Appends the values as runs of equal ones: each value once, then the lengths. Their type must have no padding.
+    template <class T>
+    void put_runs(const std::vector<T>& values)
+    {
+        std::vector<T> of_runs;
+        std::vector<std::uint32_t> lengths;
+        for (std::size_t begin = 0, end = 0; begin < values.size(); begin = end) {
+            const std::size_t last = std::min(values.size(), begin + std::numeric_limits<std::uint32_t>::max());
+            while (end < last && std::memcmp(&values[begin], &values[end], sizeof(T)) == 0) ++end;
+            of_runs.push_back(values[begin]);
+            lengths.push_back(std::uint32_t(end - begin));
+        }
+        put_array(of_runs);
+        put_array(lengths);
     }
     /// Appends a u32 length, then the text.
     void put_text(const std::string& text)
@@ -64,6 +82,19 @@ public:
         const char* const start = take_array<T>(count);
         std::vector<T> values(count);
         if (count > 0) std::memcpy(static_cast<void*>(values.data()), start, count * sizeof(T));
+        return values;
+    }
+    /// Reads at most `most` values that put_runs() wrote.
+    template <class T>
+    std::vector<T> get_runs(std::uint64_t most)
+    {
+        const std::vector<T> of_runs = get_array<T>();
+        const auto lengths = get_array<std::uint32_t>();
+        const auto count = std::accumulate(lengths.begin(), lengths.end(), std::uint64_t(0));
+        if (lengths.size() != of_runs.size() || count > most) throw std::out_of_range("runs");
+        std::vector<T> values;
+        values.reserve(count);
+        for (std::size_t k = 0; k < lengths.size(); ++k) values.insert(values.end(), lengths[k], of_runs[k]);
         return values;
     }
     /// Returns a view of `count` values without a count before them. They must be aligned.

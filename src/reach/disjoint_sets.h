@@ -11,6 +11,8 @@ namespace spawnfield {
 /// Anderson, Woll, Wait-free parallel algorithms for the union-find problem, 1991.
 class DisjointSets {
 public:
+    void reserve(std::size_t count) { parents_.reserve(count); }
+
     /// Adds sets of one number each, until there are `count` numbers. Not while other threads use the sets.
     void grow(std::size_t count)
     {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace spawnfield {
 namespace {
@@ -10,6 +11,14 @@ namespace {
 constexpr int block = 16;  // columns of a block along a row
 
 }  // namespace
+
+void GraphBuilder::StateRow::clear()
+{
+    first.clear();
+    places.clear();
+    details.clear();
+    left.clear();
+}
 
 GraphBuilder::GraphBuilder(ReachGraph::Impl& graph)
     : graph_(graph), keeps_ways_(graph.keep == ReachGraph::Impl::Keep::Ways),
@@ -25,6 +34,13 @@ DisjointSets GraphBuilder::run()
 {
     const int threads = graph_.options.threads, rows = graph_.grid.rows, longest = graph_.lattice.longest_rows();
     const int band = std::max(block, 2 * longest);  // rows whose states are found before the ways between them
+    // Most worlds have about one place per column. Memory that is only reserved costs nothing.
+    const std::size_t columns = graph_.column_of(0, rows);
+    graph_.first.reserve(columns + 1);
+    graph_.ground.reserve(columns);
+    graph_.valid.reserve(columns);
+    graph_.first_node.reserve(columns + 1);
+    nodes_.reserve(columns);
     graph_.first.assign(1, 0);
     graph_.first_node.assign(1, 0);
     int done = 0;  // rows whose ways are known
@@ -34,19 +50,22 @@ DisjointSets GraphBuilder::run()
             if (graph_.options.progress) graph_.options.progress((begin + share * (end - begin)) / rows);
         };
         find_blocks(begin, end);
+        reuse_rows(begin, end);
         parallel_for(std::size_t(end - begin), threads, report, [&](std::size_t k) { find_states(begin + int(k)); });
         for (int row = begin; row < end; ++row) append(rows_[std::size_t(row)]);
         const auto for_rows = [&](int from, int to, auto&& visit) {
             parallel_for(std::size_t(to - from), threads, {}, [&](std::size_t k) { visit(from + int(k)); });
         };
         if (!is_car_ && !keeps_ways_) {
+            for_rows(begin, end, [&](int row) { find_open_nodes(row); });
             for_rows(begin, end, [&](int row) { join_open(row); });
             for_rows(begin, end, [&](int row) { find_open_sets(row); });
-            for_rows(done, ready, [&](int row) { find_joined(row); });
         }
+        for_rows(done, ready, [&](int row) { find_columns_left(row); });
         for (const Pass& pass : passes_) for_rows(done, ready, [&](int row) { join_row(row, pass); });
         done = ready;
-        for (int row = std::max(0, begin - band - longest); row < done - longest; ++row) rows_[std::size_t(row)] = {};
+        for (int row = std::max(0, begin - band - longest); row < done - longest; ++row)
+            if (StateRow& old = rows_[std::size_t(row)]; !old.first.empty()) spare_.push_back(std::exchange(old, {}));
     }
     return std::move(nodes_);
 }
@@ -74,6 +93,16 @@ void GraphBuilder::find_blocks(int begin, int end)
         if (first <= last)
             blocks_[b] = graph_.way_judges.local().place_of_all(position(first, begin), position(last, end - 1));
     });
+}
+
+/// Gives new rows the memory of rows that are not needed any more.
+void GraphBuilder::reuse_rows(int begin, int end)
+{
+    for (int row = begin; row < end && !spare_.empty(); ++row) {
+        StateRow& states = rows_[std::size_t(row)] = std::move(spare_.back());
+        spare_.pop_back();
+        states.clear();
+    }
 }
 
 void GraphBuilder::find_states(int row)
@@ -109,12 +138,15 @@ void GraphBuilder::append(const StateRow& row)
     graph_.ways[std::size_t(Way::Turn)].resize(graph_.ground.size(), no_ways);
 }
 
-/// Returns the node of a column whose only place is open.
-std::optional<std::uint32_t> GraphBuilder::open_node(int col, int row) const
+void GraphBuilder::find_open_nodes(int row)
 {
-    const std::span<const PlaceStates> places = places_at(col, row);
-    if (places.size() != 1 || !places[0].is_open) return std::nullopt;
-    return node_of({col, row, 0}, 0);
+    StateRow& states = rows_[std::size_t(row)];
+    const auto cols = std::size_t(graph_.grid.cols);
+    states.open_sets.resize(cols);
+    for (std::size_t col = 0; col < cols; ++col) {
+        const std::span<const PlaceStates> places = places_at(int(col), row);
+        states.open_sets[col] = places.size() == 1 && places[0].is_open ? node_of({int(col), row, 0}, 0) : none;
+    }
 }
 
 /// Joins the open places of a row with their neighbours before them in the row and in the column. So most of the ways
@@ -122,62 +154,60 @@ std::optional<std::uint32_t> GraphBuilder::open_node(int col, int row) const
 void GraphBuilder::join_open(int row)
 {
     const WayJudge& judge = graph_.way_judges.local();
-    for (int col = 0; col < graph_.grid.cols; ++col) {
-        const auto node = open_node(col, row);
-        if (!node) continue;
-        for (const LatticeMove back : {LatticeMove{-1, 0}, LatticeMove{0, -1}}) {
-            const auto other = open_node(col + back.cols, row + back.rows);
-            if (other && judge.are_level(place({col, row, 0}), place({col + back.cols, row + back.rows, 0})))
-                nodes_.join(*node, *other);
-        }
-    }
+    const StateRow& states = rows_[std::size_t(row)];
+    const auto join = [&](int col, const StateRow& others, int other_col) {
+        const std::uint32_t node = states.open_sets[std::size_t(col)], other = others.open_sets[std::size_t(other_col)];
+        if (node != none && other != none &&
+            judge.are_level(states.places[states.first[std::size_t(col)]],
+                            others.places[others.first[std::size_t(other_col)]]))
+            nodes_.join(node, other);
+    };
+    for (int col = 1; col < graph_.grid.cols; ++col) join(col, states, col - 1);
+    for (int col = 0; col < graph_.grid.cols && row > 0; ++col) join(col, rows_[std::size_t(row) - 1], col);
 }
 
 void GraphBuilder::find_open_sets(int row)
 {
     StateRow& states = rows_[std::size_t(row)];
-    const auto cols = std::size_t(graph_.grid.cols);
-    states.open_sets.assign(cols, none);
-    states.run.assign(cols, 0);
-    for (std::size_t col = 0; col < cols; ++col) {
-        const auto node = open_node(int(col), row);
-        if (!node) continue;
-        states.open_sets[col] = nodes_.find(*node);
-        states.run[col] = col > 0 && states.open_sets[col - 1] == states.open_sets[col] ? states.run[col - 1] + 1 : 1;
+    std::vector<std::uint32_t>& sets = states.open_sets;
+    states.run.resize(sets.size());
+    for (std::size_t col = 0; col < sets.size(); ++col) {
+        if (sets[col] != none) sets[col] = nodes_.find(sets[col]);
+        states.run[col] = sets[col] == none ? 0 : col > 0 && sets[col - 1] == sets[col] ? states.run[col - 1] + 1 : 1;
     }
 }
 
-/// Finds the columns in the middle of a square of open places that are joined. No way leads out of this square. Sets
-/// only grow, so two places that had the same set at different times are joined.
-void GraphBuilder::find_joined(int row)
+/// Finds the columns from which a way may lead to a node that is not joined: those with places, but not in the middle
+/// of a square of open places that are joined. No way leads out of this square. Sets only grow, so two places that had
+/// the same set at different times are joined.
+void GraphBuilder::find_columns_left(int row)
 {
     const int side = graph_.lattice.longest_rows(), cols = graph_.grid.cols;
-    std::vector<std::uint8_t>& out = rows_[std::size_t(row)].is_joined;
-    out.assign(std::size_t(cols), 0);
-    if (row < side || row + side >= graph_.grid.rows) return;
-    for (int col = side; col + side < cols; ++col) {
+    StateRow& states = rows_[std::size_t(row)];
+    const bool has_sets = !is_car_ && !keeps_ways_ && row >= side && row + side < graph_.grid.rows;
+    const auto is_joined = [&](int col) {
+        if (!has_sets || col < side || col + side >= cols) return false;
         const auto last = std::size_t(col + side);
-        const std::uint32_t set = rows_[std::size_t(row)].open_sets[last];
+        const std::uint32_t set = states.open_sets[last];
         bool all_equal = set != none;
         for (int r = row - side; r <= row + side && all_equal; ++r) {
             const StateRow& other = rows_[std::size_t(r)];
             all_equal = other.open_sets[last] == set && other.run[last] > std::uint32_t(2 * side);
         }
-        out[std::size_t(col)] = all_equal ? 1 : 0;
-    }
+        return all_equal;
+    };
+    for (int col = 0; col < cols; ++col)
+        if (!places_at(col, row).empty() && !is_joined(col)) states.left.push_back(col);
 }
 
 void GraphBuilder::join_row(int row, const Pass& pass)
 {
     WayJudge& judge = graph_.way_judges.local();
-    const std::vector<std::uint8_t>& is_joined = rows_[std::size_t(row)].is_joined;
-    for (int col = 0; col < graph_.grid.cols; ++col) {
-        if (!is_joined.empty() && is_joined[std::size_t(col)] != 0) continue;
+    for (const int col : rows_[std::size_t(row)].left)
         for (std::size_t k = 0; k < places_at(col, row).size(); ++k)
             for (int heading = 0; heading < lattice_headings; ++heading)
                 if (const PlaceAt from{col, row, k}; has_heading(place(from).valid, heading))
                     examine(judge, from, heading, pass);
-    }
 }
 
 /// Joins a state and the one to which a way leads, if there is one.

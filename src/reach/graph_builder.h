@@ -31,10 +31,12 @@ private:
         std::vector<std::uint32_t> first;  ///< first place of each column; then their number
         std::vector<PlaceStates> places;
         DetailsStore details;  ///< of the places
-        /// For each column whose only place is open, a number of the set of its node; else `none`.
+        /// For each column whose only place is open, its node, later a number of the set of this node; else `none`.
         std::vector<std::uint32_t> open_sets;
-        std::vector<std::uint32_t> run;       ///< how many columns up to this one have the same open set
-        std::vector<std::uint8_t> is_joined;  ///< for each column, whether all of its ways lead to joined nodes
+        std::vector<std::uint32_t> run;  ///< how many columns up to this one have the same open set
+        std::vector<int> left;  ///< columns with a place from which a way may lead to a node that is not joined
+
+        void clear();
     };
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
     /// A column, and one of its places.
@@ -56,12 +58,13 @@ private:
     Vec2 position(int col, int row) const { return {graph_.grid.x_of(col), graph_.grid.y_of(row)}; }
 
     void find_blocks(int begin, int end);
+    void reuse_rows(int begin, int end);
     void find_states(int row);
     void append(const StateRow& row);
-    std::optional<std::uint32_t> open_node(int col, int row) const;
+    void find_open_nodes(int row);
     void join_open(int row);
     void find_open_sets(int row);
-    void find_joined(int row);
+    void find_columns_left(int row);
     void join_row(int row, const Pass& pass);
     void examine(WayJudge& judge, const PlaceAt& from, int heading, const Pass& pass);
     bool may_join(const WayJudge& judge, const PlaceAt& from, int heading, Way way);
@@ -74,6 +77,7 @@ private:
     const bool keeps_ways_, is_car_;
     std::vector<Pass> passes_;
     std::vector<StateRow> rows_;
+    std::vector<StateRow> spare_;  ///< rows that are not needed any more; others use their memory
     /// For each block of columns of the rows that are examined, the place that all of its columns have, if they have
     /// the same open one.
     std::vector<std::optional<PlaceStates>> blocks_;

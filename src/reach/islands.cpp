@@ -1,3 +1,4 @@
+#include "base/parallel.h"
 #include "reach/reach_graph.h"
 
 #include <algorithm>
@@ -24,29 +25,26 @@ std::array<int, 2> headings_around(double yaw)
 /// Numbers the sets of nodes, and adds up their places.
 void ReachGraph::Impl::find_islands(DisjointSets& nodes)
 {
-    const std::uint32_t count = first_node.back();
-    // A place counts once for each island on which it has a heading.
-    std::vector<std::uint32_t> sizes(count, 0);
-    std::vector<std::uint32_t> found;
-    for (std::size_t p = 0; p < ground.size(); ++p) {
-        found.clear();
-        for (std::uint32_t node = first_node[p]; node < first_node[p + 1]; ++node) found.push_back(nodes.find(node));
-        std::sort(found.begin(), found.end());
-        found.erase(std::unique(found.begin(), found.end()), found.end());
-        for (const std::uint32_t root : found) ++sizes[root];
-    }
+    const std::size_t count = first_node.back();
+    node_islands.resize(count);  // first the smallest node of each set
+    constexpr std::size_t part = 1 << 16;
+    parallel_for((count + part - 1) / part, options.threads, {}, [&](std::size_t k) {
+        for (std::size_t node = k * part; node < std::min(count, (k + 1) * part); ++node)
+            node_islands[node] = nodes.find(std::uint32_t(node));
+    });
+    std::vector<std::uint32_t> sizes(count, 0);  // later the numbers of the islands
+    for (std::size_t p = 0; p < ground.size(); ++p) for_each_island(p, [&](std::uint32_t root) { ++sizes[root]; });
     std::vector<std::uint32_t> roots;
     for (std::uint32_t node = 0; node < count; ++node)
         if (sizes[node] > 0) roots.push_back(node);
     std::stable_sort(roots.begin(), roots.end(), [&](std::uint32_t a, std::uint32_t b) { return sizes[a] > sizes[b]; });
-    std::vector<std::uint32_t> numbers(count);
-    for (std::uint32_t i = 0; i < roots.size(); ++i) numbers[roots[i]] = i;
-    node_islands.resize(count);
-    for (std::uint32_t node = 0; node < count; ++node) node_islands[node] = numbers[nodes.find(node)];
     islands.clear();
-    for (const std::uint32_t root : roots)
+    for (const std::uint32_t root : roots) {
         islands.push_back(
             {.area = sizes[root] * grid.step * grid.step, .share = double(sizes[root]) / double(ground.size())});
+        sizes[root] = std::uint32_t(islands.size() - 1);
+    }
+    for (std::uint32_t& island : node_islands) island = sizes[island];
     set_places();
 }
 
@@ -58,15 +56,9 @@ void ReachGraph::Impl::set_places()
     std::vector<std::uint32_t> counts(islands.size(), 0);
     std::vector<double> nearest(islands.size(), infinity);
     for (Island& island : islands) island.low = infinity, island.high = -infinity;
-    // Calls visit once for each place of an island.
     const auto for_each = [&](const auto& visit) {
         for_each_place([&](std::size_t p, double x, double y) {
-            const std::span<const std::uint32_t> here =
-                std::span(node_islands).subspan(first_node[p], first_node[p + 1] - first_node[p]);
-            for (std::size_t k = 0; k < here.size(); ++k)
-                if (std::find(here.begin(), here.begin() + std::ptrdiff_t(k), here[k]) ==
-                    here.begin() + std::ptrdiff_t(k))
-                    visit(here[k], Vec3(x, y, ground[p]));
+            for_each_island(p, [&](std::uint32_t island) { visit(island, Vec3(x, y, ground[p])); });
         });
     };
     for_each([&](std::uint32_t i, const Vec3& at) {

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Raise this if the places, nodes or islands of the same map and robot change, or the bytes of the file.
-constexpr std::uint32_t graph_version = 2;
+constexpr std::uint32_t graph_version = 3;
 constexpr std::string_view magic = "spawnfield-reach";
 constexpr std::size_t checksum_size = 16;
 

@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -19,6 +20,22 @@ namespace spawnfield {
 namespace {
 
 constexpr double largest_turning_radius = 100;  // m
+
+/// Returns how many things each of some groups has, from the number of the first thing of each, and of all.
+std::vector<std::uint32_t> counts_of(const std::vector<std::uint32_t>& first)
+{
+    std::vector<std::uint32_t> out(first.size() - 1);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = first[k + 1] - first[k];
+    return out;
+}
+
+/// The reverse.
+std::vector<std::uint32_t> first_of(const std::vector<std::uint32_t>& counts)
+{
+    std::vector<std::uint32_t> out(counts.size() + 1, 0);
+    std::partial_sum(counts.begin(), counts.end(), out.begin() + 1);
+    return out;
+}
 
 }  // namespace
 
@@ -86,17 +103,17 @@ ReachGraph::Impl::Impl(const Judge& judge_, const ReachOptions& options_, Keep k
 std::string ReachGraph::Impl::bytes() const
 {
     BinaryWriter out;
-    out.put_array(first);
-    out.put_array(ground);
-    out.put_array(valid);
-    out.put_array(first_node);
-    out.put_array(node_islands);
+    out.put_runs(counts_of(first));
+    out.put_runs(ground);
+    out.put_runs(valid);
+    out.put_runs(counts_of(first_node));
+    out.put_runs(node_islands);
     out.put(std::uint64_t(islands.size()));
     for (const Island& island : islands)
         for (const double value :
              {island.area, island.share, island.place.x(), island.place.y(), island.place.z(), island.low, island.high})
             out.put(value);
-    for (const std::vector<Ways>& of_kind : ways) out.put_array(of_kind);
+    for (const std::vector<Ways>& of_kind : ways) out.put_runs(of_kind);
     return out.take();
 }
 
@@ -104,18 +121,18 @@ ReachGraph::Impl::Impl(const Judge& judge_, const ReachOptions& options_, Keep k
     : Impl(judge_, options_, keep_, Empty())
 {
     BinaryReader in(bytes);
-    first = in.get_array<std::uint32_t>();
-    ground = in.get_array<double>();
-    valid = in.get_array<HeadingSet>();
-    first_node = in.get_array<std::uint32_t>();
-    node_islands = in.get_array<std::uint32_t>();
+    first = first_of(in.get_runs<std::uint32_t>(std::uint64_t(grid.cols) * std::uint64_t(grid.rows)));
+    ground = in.get_runs<double>(first.back());
+    valid = in.get_runs<HeadingSet>(first.back());
+    first_node = first_of(in.get_runs<std::uint32_t>(first.back()));
+    node_islands = in.get_runs<std::uint32_t>(first_node.back());
     for (auto count = in.get<std::uint64_t>(); count > 0; --count) {
         Island& island = islands.emplace_back();
         for (double* const value : {&island.area, &island.share, &island.place.x(), &island.place.y(),
                                     &island.place.z(), &island.low, &island.high})
             *value = in.get<double>();
     }
-    for (std::vector<Ways>& of_kind : ways) of_kind = in.get_array<Ways>();
+    for (std::vector<Ways>& of_kind : ways) of_kind = in.get_runs<Ways>(ground.size());
     if (!is_consistent()) throw std::runtime_error("its numbers do not fit each other");
 }
 

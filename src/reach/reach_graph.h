@@ -7,6 +7,7 @@
 
 #include <spawnfield/reach.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <string>
@@ -86,6 +87,15 @@ struct ReachGraph::Impl {
         for (int row = 0; row < grid.rows; ++row)
             for (int col = 0; col < grid.cols; ++col)
                 for (; p < first[column_of(col, row) + 1]; ++p) visit(p, grid.x_of(col), grid.y_of(row));
+    }
+
+    /// Calls visit(island) once for each island on which the robot stands at a place at one heading or more.
+    template <class Visit>
+    void for_each_island(std::size_t place, const Visit& visit) const
+    {
+        const auto begin = node_islands.begin() + first_node[place], end = node_islands.begin() + first_node[place + 1];
+        for (auto node = begin; node != end; ++node)
+            if (std::find(begin, node, *node) == node) visit(*node);
     }
 
     mutable PerThread<WayJudge> way_judges;  ///< for poses that are not states
