@@ -10,12 +10,13 @@ packages=(
   libassimp-dev libccd-dev libcli11-dev libdeflate-dev libeigen3-dev libfcl-dev libhpdf-dev liboctomap-dev
   libopencv-core-dev libopencv-imgproc-dev libpng-dev libproj-dev libqhull-dev libsdformat-dev
   libtbb-dev libtiff-dev libtinyxml2-dev liburdfdom-dev libxxhash-dev libyaml-cpp-dev nlohmann-json3-dev zlib1g-dev
+  python3-dev python3-venv
 )
 for argument in "$@"; do
   case "$argument" in
     --tests)
       packages+=(catch2 clang clang-format libembree-dev libopencv-imgcodecs-dev librecast-dev)
-      packages+=(python3-matplotlib python3-roslaunch python3-venv)
+      packages+=(python3-matplotlib python3-roslaunch)
       ;;
     --experiments) packages+=(python3-matplotlib) ;;
     *)

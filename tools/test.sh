@@ -14,7 +14,10 @@ esac
 tools/install-dependencies.sh --tests
 tools/test-python.sh
 echo "building (some minutes the first time)" >&2
-tools/build.sh release
+python=$PWD/build/python/bin/python
+with_python=OFF
+"$python" -m nanobind --version >/dev/null 2>&1 && with_python=ON
+tools/build.sh release "-DSPAWNFIELD_PYTHON=$with_python" "-DPython_EXECUTABLE=$python"
 results=$PWD/build/release/tests.xml
 ctest --preset release -j "$(nproc)" --no-label-summary --output-junit "$results"
 if [ -n "$no_skips" ] && grep -q '<skipped' "$results"; then

@@ -34,7 +34,8 @@ struct BakeReport {
     std::string hash;          ///< the same as Map::hash
 };
 
-/// Writes the map folder: map.yaml and map_files.
+/// Writes the map folder: map.yaml and map_files. `scene_file` is that from which the scene was read; empty: the scene
+/// was made in memory; then Map::scene_file is "(memory)", and the hash that of an empty file.
 ///
 /// If the map has z limits, terrain.tiff, heightmap.png, preview.png and occupancy.bt are restricted to them. The
 /// geometry is not restricted, because a robot also collides with solid space beyond the limits. The map is written to

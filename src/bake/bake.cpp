@@ -230,11 +230,12 @@ BakeReport bake_scene(Scene scene, const fs::path& scene_file, const fs::path& f
     BakeReport report;
     Stopwatch watch;
     const auto lap = [&](const char* stage) { report.seconds.emplace_back(stage, watch.lap()); };
-    Map map = plan_map("bake", scene, options, report,
-                       [&](const std::string& what) { throw FileError(scene_file.string(), what); });
+    Map map = plan_map("bake", scene, options, report, [&](const std::string& what) {
+        throw FileError(scene_file.empty() ? "the scene" : scene_file.string(), what);
+    });
     if (map.name.empty()) map.name = scene_file.stem().string();
-    map.scene_file = scene_file.filename().string();
-    map.scene_hash = checksum(read_file(scene_file));
+    map.scene_file = scene_file.empty() ? "(memory)" : scene_file.filename().string();
+    map.scene_hash = checksum(scene_file.empty() ? std::string() : read_file(scene_file));
     const GridFrame frame = frame_around(map.bounds, map.resolution);
     OutputFolder target(folder, objection_to);
     map.geometry = Geometry(scene, options.threads);

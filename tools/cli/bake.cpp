@@ -1,8 +1,10 @@
 #include "command.h"
+#include "host.h"
 #include "ground_args.h"
 #include "messages.h"
 #include "numbers.h"
 #include "scene_args.h"
+#include "session.h"
 
 #include <spawnfield/bake.h>
 #include <spawnfield/error.h>
@@ -43,12 +45,12 @@ Ending run_bake(const BakeArgs& args, const CLI::App& command, Summary& summary)
     options.progress = progress_bar(args, "bake");
 
     reading.bounds = options.bounds;
-    Scene scene = load_scene(args.scene, reading);
-    notices(args, scene.notices);
+    Scene scene = open_scene(args, args.scene, reading);
     summary.lap("load");
-    const BakeReport report = args.update.empty() ? bake(std::move(scene), scene_file_of(args.scene), args.out, options)
-                                                  : update_map(std::move(scene), scene_file_of(args.scene), args.out,
-                                                               args.update, options);
+    const bool is_in_memory = args.host->input<Scene>(args.scene) != nullptr;
+    const std::filesystem::path file = is_in_memory ? std::filesystem::path() : scene_file_of(args.scene);
+    const BakeReport report = args.update.empty() ? bake(std::move(scene), file, args.out, options)
+                                                  : update_map(std::move(scene), file, args.out, args.update, options);
     for (const std::string& text : report.notices) notice(args, text);
     summary.lap("bake");
     summary.more_stages = report.seconds;

@@ -2,6 +2,7 @@
 #include "messages.h"
 #include "numbers.h"
 #include "output.h"
+#include "results.h"
 #include "session.h"
 #include "spelling.h"
 #include "streams.h"
@@ -55,9 +56,9 @@ void write_results(const CheckArgs& args, const VerdictReport& report)
         else
             sink(verdicts_csv(report.table, report.judgements, report.judge.map(), report.repairs));
     };
-    write_output(args.out, write_verdicts, [&] {
+    write_output(args, args.out, write_verdicts, [&] {
         if (args.repaired.empty()) return;
-        write_output(args.repaired, [&](const auto& sink) { sink(repaired_csv(report.table, *report.repairs)); });
+        write_output(args, args.repaired, [&](const auto& sink) { sink(repaired_csv(report.table, *report.repairs)); });
     });
 }
 
@@ -138,13 +139,13 @@ Ending run_check(const CheckArgs& args, const CLI::App& command, Summary& summar
     if (command.count("--poses") == 0) throw ArgumentError("--poses is required, or --pairs");
     refuse_check_pairs_options(command);
     const std::optional<RepairOptions> repair = repair_options(args, command);
-    const PoseTable table = open_poses(args, args.poses);
+    PoseTable table = open_poses(args, args.poses);
     notice_about_columns(args, table);
     if (args.is_settled()) notice_about_tilted(args, args.poses, table);
     const Session session = open_session(args, summary);
     notices_about_stance(args, command, session.robot);
     summary.lap("load");
-    const Checked checked = check_poses(args, *session.judge, table);
+    Checked checked = check_poses(args, *session.judge, table);
     std::optional<RepairList> repairs;
     if (repair) repairs = repair_poses(*session.judge, table.poses, checked.judgements, *repair);
     summary.lap("query");
@@ -155,9 +156,12 @@ Ending run_check(const CheckArgs& args, const CLI::App& command, Summary& summar
     Ending ending{.notice = repairs ? unrepaired_words(args, *repairs) : ""};
     bool is_refused = false;
     for (std::size_t i = 0; i < table.poses.size() && args.require_valid; ++i) is_refused |= remains_invalid(report, i);
-    if (!is_refused) return ending;
-    ending.status = not_valid;
-    ending.complaint = "--require-valid: " + not_valid_words(report);
+    if (is_refused) {
+        ending.status = not_valid;
+        ending.complaint = "--require-valid: " + not_valid_words(report);
+    }
+    keep(args, FoundVerdicts{std::move(table), std::move(checked.judgements), std::move(checked.settled),
+                             std::move(repairs), *session.judge});
     return ending;
 }
 

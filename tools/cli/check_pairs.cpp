@@ -45,9 +45,9 @@ std::string pairs_not_valid_words(const PairReport& report)
            " not valid:" + list + (count > shown ? "\n  and " + std::to_string(count - shown) + " more" : "");
 }
 
-void write_report(const std::string& out, const std::string& format, const PairReport& report)
+void write_report(const CommonArgs& args, const std::string& out, const std::string& format, const PairReport& report)
 {
-    write_output(out, [&](const auto& sink) {
+    write_output(args, out, [&](const auto& sink) {
         if (format == "json")
             write_judged_pairs_json(report, sink);
         else if (format == "junit")
@@ -101,7 +101,7 @@ Ending run_check_pairs(const QueryArgs& query, const CheckPairsArgs& args, const
                                                       options);
     summary.lap("query");
     const PairReport report{table, pairs, *session.judge, options};
-    write_report(output.file, output.format, report);
+    write_report(query, output.file, output.format, report);
     summary.extra.push_back(counted(pairs.size(), "pair") + ": " + pair_count_words(pairs));
     const std::string complaint = output.require_valid ? pairs_not_valid_words(report) : "";
     if (complaint.empty()) return {};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "host.h"
 #include "summary.h"
 
 #include <CLI/CLI.hpp>
@@ -38,9 +39,10 @@ Ending interrupted_ending(std::size_t found, const std::string& noun, std::optio
 
 /// The command that the user chose, with its options.
 struct ChosenCommand {
-    std::string name;
-    std::shared_ptr<const CommonArgs> args;
-    std::function<Ending(Summary&)> work;  ///< writes all results, and fills the summary
+    Host* host = nullptr;  ///< what surrounds the command
+    std::string name = {};
+    std::shared_ptr<const CommonArgs> args = {};
+    std::function<Ending(Summary&)> work = {};  ///< writes all results, and fills the summary
 };
 
 /// Makes `work` the work of the chosen command if the user chooses this one.
@@ -49,7 +51,9 @@ void set_work(CLI::App& command, const std::shared_ptr<Args>& args, ChosenComman
               Ending (*work)(const Args&, const CLI::App&, Summary&))
 {
     command.callback([=, &command, &chosen] {
-        chosen = {command.get_name(), args, [=, &command](Summary& summary) { return work(*args, command, summary); }};
+        args->host = chosen.host;
+        chosen = {chosen.host, command.get_name(), args,
+                  [=, &command](Summary& summary) { return work(*args, command, summary); }};
     });
 }
 
@@ -66,5 +70,8 @@ void add_sample(CLI::App& app, ChosenCommand& chosen);
 void add_heatmap(CLI::App& app, ChosenCommand& chosen);
 void add_export(CLI::App& app, ChosenCommand& chosen);
 void add_experiment(CLI::App& app, const std::string& command_line, ChosenCommand& chosen);
+
+/// Adds all commands and the text of the program's help. `command_line`: for reports. `chosen` must have its host.
+void add_commands(CLI::App& app, const std::string& command_line, ChosenCommand& chosen);
 
 }  // namespace spawnfield::cli

@@ -7,11 +7,14 @@
 
 namespace spawnfield::cli {
 
+class Host;
+
 /// Largest value of --threads.
 inline constexpr int most_threads = 1024;
 
 /// Options that every command has.
 struct CommonArgs {
+    Host* host = nullptr;  ///< what surrounds the command; set when the command is chosen
     int threads = 0;
     bool quiet = false;
     std::string summary;

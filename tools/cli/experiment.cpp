@@ -1,7 +1,6 @@
 #include "angle.h"
 #include "command.h"
 #include "experiment_report.h"
-#include "interrupt.h"
 #include "messages.h"
 #include "numbers.h"
 #include "raster_args.h"
@@ -173,7 +172,7 @@ private:
 
     void write(OutputFolder& folder, std::vector<ExperimentRun> runs)
     {
-        clear_progress_bar();
+        clear_progress_bar(args_);
         std::uint64_t exact_checks = 0;
         for (const ExperimentRun& run : runs) {
             counts_ += run.counts;
@@ -186,7 +185,7 @@ private:
         if (args_.search) experiment.seed = search_.seed;
         write_file_atomically(folder.path() / "experiment.csv", experiment_csv(experiment.runs));
         write_file_atomically(folder.path() / "experiment.md", experiment_markdown(experiment));
-        stop_if_interrupted();
+        stop_if_interrupted(args_);
         folder.commit();
     }
 

@@ -111,7 +111,7 @@ void write_nav2(const ExportJob& job)
     nav2_image_of(job.args.out);  // refuses a wrong name before all work
     const RasterOptions options = image_options(job);
     const VerdictImage image = ask(job, options, image_frame(job));
-    clear_progress_bar();
+    clear_progress_bar(job.args);
     write_nav2_map(image, job.args.out, comment_of(job, options, "top"));
 }
 
@@ -143,7 +143,7 @@ void write_geotiff(const ExportJob& job)
     options.threads = job.args.threads;
     options.progress = progress_bar(job.args, "writing");
     spawnfield::write_geotiff(job.session.map, frame, verdicts ? &*verdicts : nullptr, options, job.args.out);
-    clear_progress_bar();
+    clear_progress_bar(job.args);
 }
 
 void write_ply(const ExportJob& job)
@@ -155,7 +155,7 @@ void write_ply(const ExportJob& job)
     const RasterResult result = raster(*job.session.judge, options);
     job.summary.lap("query");
     job.summary.set_verdicts(result.counts, result.exact_checks);
-    write_output(job.args.out,
+    write_output(job.args, job.args.out,
                  [&](const auto& sink) { spawnfield::write_ply(result, comment_of(job, options, "all"), sink); });
 }
 
@@ -185,7 +185,7 @@ void write_glb(const ExportJob& job)
         markers.names = column_of(table, "name");
     }
     const Progress progress = progress_bar(job.args, "export");
-    write_output(job.args.out, [&](const auto& sink) {
+    write_output(job.args, job.args.out, [&](const auto& sink) {
         spawnfield::write_glb(job.session.map, markers, sink, job.args.threads, progress);
     });
 }

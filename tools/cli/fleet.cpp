@@ -1,9 +1,9 @@
 #include "angle.h"
 #include "fleet_args.h"
-#include "interrupt.h"
 #include "messages.h"
 #include "numbers.h"
 #include "output.h"
+#include "results.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>
@@ -266,7 +266,7 @@ public:
         const bool has_names = !inputs_.fleet.fill || outputs_[0]->has_names();
         if (inputs_.fleet.fill) outputs_[0]->give_names(robots);
         if (inputs_.format == "csv")
-            return write_output(inputs_.out, [&](const auto& sink) {
+            return write_output(inputs_.query, inputs_.out, [&](const auto& sink) {
                 sink(inputs_.fleet.fill ? filled_csv(fleet, kinds[0], has_names, robots) : fleet_csv(fleet, kinds));
             });
         if (is_launch(inputs_.format))
@@ -276,7 +276,7 @@ public:
             std::vector<std::size_t> kind_of;
             for (const FleetKind& kind : kinds) shapes.push_back(kind.judge.robot());
             for (const FleetRobot& robot : fleet.robots) kind_of.push_back(robot.kind);
-            return write_output(inputs_.out,
+            return write_output(inputs_.query, inputs_.out,
                                 [&](const auto& sink) { sink(mujoco_bodies(robots, shapes, kind_of, inertias_)); });
         }
         outputs_[0]->write(robots, kinds[0].judge.map(), [&] { return fleet_json(fleet, kinds, options, robots); });
@@ -397,15 +397,19 @@ Ending run_fleet(const FleetInputs& inputs, const CLI::App& command, Summary& su
                          .seed = inputs.draws.seed,
                          .threads = inputs.query.threads,
                          .progress = progress_bar(inputs.query, "sample", false),
-                         .stop = is_interrupted};
+                         .stop = stop_request(inputs.query)};
     if (file.formation) options.formation = formation_of(inputs, *file.formation, members[0], sessions[0], summary);
-    const Fleet fleet = place_fleet(kinds, options);
-    summary.is_interrupted = end_interruptible_work(!fleet.robots.empty());
+    Fleet fleet = place_fleet(kinds, options);
+    summary.is_interrupted = end_interruptible_work(inputs.query, !fleet.robots.empty());
     summary.lap("query");
     output.write(fleet, kinds, options);
     fill(summary, fleet, kinds, options);
-    return summary.is_interrupted ? interrupted_ending(fleet.robots.size(), "robot", wanted_robots(kinds))
-                                  : ending_of(fleet, kinds);
+    Ending ending = summary.is_interrupted ? interrupted_ending(fleet.robots.size(), "robot", wanted_robots(kinds))
+                                           : ending_of(fleet, kinds);
+    std::vector<std::string> names;
+    for (const FleetKind& kind : kinds) names.push_back(kind.name);
+    keep(inputs.query, FoundFleet{std::move(fleet), std::move(names)});
+    return ending;
 }
 
 }  // namespace spawnfield::cli

@@ -580,16 +580,14 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
         refuse(command, scene_option_names, "is only for scenes; " + args.what + " is a robot");
         refuse(command, {"--verify", "--islands", "--with", "--without"},
                "is only for maps; " + args.what + " is a robot");
-        const Robot robot = load_robot(args.what, robot_options(args));
-        notices(args, robot.notices);
+        const Robot robot = open_robot(args, args.what, robot_options(args));
         if (picture_to) write_robot_picture(robot, picture_to->path);
         out = robot_json(robot);
     } else {
         refuse(command, robot_options_of_info, "is only for robots; " + args.what + " is not a robot");
         refuse(command, {"--verify", "--islands", "--with", "--without"},
                "is only for maps; " + args.what + " is not a map");
-        Scene scene = load_scene(args.what, scene_options(args, args));
-        notices(args, scene.notices);
+        Scene scene = open_scene(args, args.what, scene_options(args, args));
         out = scene_json(scene);
         parts = std::move(scene.parts);
     }
@@ -602,7 +600,7 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
                                  ? robot_lines(out)
                                  : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) +
                                        origin_line(out) + scene_lines(out, parts);
-    write_output("", [&](const auto& sink) { sink(text); });
+    write_output(args, "", [&](const auto& sink) { sink(text); });
     summary.extra.insert(summary.extra.begin(), args.what);
     return {};
 }

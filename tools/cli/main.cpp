@@ -1,9 +1,7 @@
 #include "command.h"
-#include "help_format.h"
-#include "interrupt.h"
-#include "messages.h"
 #include "spelling.h"
 #include "streams.h"
+#include "terminal.h"
 
 #include <spawnfield/error.h>
 
@@ -18,15 +16,12 @@ namespace {
 using namespace spawnfield;
 using namespace spawnfield::cli;
 
-/// Prints the message and returns the exit status.
-int failed(int status, const std::string& message)
-{
-    complain(message);
-    return status;
-}
-
 int run_guarded(const CLI::App& app, const ChosenCommand& chosen)
 {
+    const auto failed = [&](int status, const std::string& message) {
+        chosen.host->complain(message);
+        return status;
+    };
     try {
         for (const CLI::App* const command : app.get_subcommands()) check_streams(*command);
         return run_command(chosen);
@@ -82,37 +77,24 @@ bool has_unknown_command(const std::vector<std::string>& names, int argc, char**
 
 int main(int argc, char** argv)
 {
-    CLI::App app{"spawnfield: where can this robot stand in this world?", "spawnfield"};
-    app.formatter(std::make_shared<HelpFormat>());
-    app.get_help_ptr()->description("Print this help and exit");
-    app.set_version_flag("--version", version(), "Print the version and exit");
-    app.require_subcommand(1);
-    app.footer(
-        "Example:\n"
-        "  spawnfield bake maps/training/scene.yaml -o /tmp/training\n"
-        "  spawnfield sample /tmp/training --robot maps/robots/husky.yaml -n 10");
-    ChosenCommand chosen;
-    add_bake(app, chosen);
-    add_info(app, chosen);
-    add_check(app, chosen);
-    add_raster(app, chosen);
-    add_search(app, chosen);
-    add_sample(app, chosen);
-    add_heatmap(app, chosen);
-    add_export(app, chosen);
-    add_experiment(app, command_line(argc, argv), chosen);
+    Terminal terminal;
+    ChosenCommand chosen{.host = &terminal};
+    CLI::App app;
+    add_commands(app, command_line(argc, argv), chosen);
     const std::vector<std::string> names = command_names(app);
-    if (has_unknown_command(names, argc, argv))
-        return failed(wrong_usage, std::string(argv[1]) + " is not a command; the commands are " +
-                                       CLI::detail::join(names, ", ") + suggestion(argv[1], names));
+    if (has_unknown_command(names, argc, argv)) {
+        terminal.complain(std::string(argv[1]) + " is not a command; the commands are " +
+                          CLI::detail::join(names, ", ") + suggestion(argv[1], names));
+        return wrong_usage;
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (const std::string words = error.get_exit_code() == 0 ? "" : unknown_option(app); !words.empty())
-            return failed(wrong_usage, words + "\nRun with --help for more information.");
-        return app.exit(error) == 0 ? done : wrong_usage;
+        const std::string words = error.get_exit_code() == 0 ? "" : unknown_option(app);
+        if (words.empty()) return app.exit(error) == 0 ? done : wrong_usage;
+        terminal.complain(words + "\nRun with --help for more information.");
+        return wrong_usage;
     }
-    catch_interrupts();
     // The process belongs to the program alone: --threads may ask for more threads than there are cores.
     const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, most_threads);
     return run_guarded(app, chosen);

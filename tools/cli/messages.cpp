@@ -1,27 +1,13 @@
 #include "messages.h"
 
-#include "interrupt.h"
+#include "host.h"
 #include "notices.h"
 
-#include <unistd.h>
-
-#include <chrono>
-#include <cstdio>
-#include <iostream>
-#include <memory>
-
 namespace spawnfield::cli {
-namespace {
-
-bool bar_shown = false;
-
-}  // namespace
 
 void notice(const CommonArgs& args, const std::string& text)
 {
-    if (args.quiet) return;
-    clear_progress_bar();
-    std::cerr << "notice: " << text << "\n";
+    if (!args.quiet) args.host->notice(text);
 }
 
 void notices(const CommonArgs& args, const std::vector<std::string>& texts)
@@ -29,33 +15,33 @@ void notices(const CommonArgs& args, const std::vector<std::string>& texts)
     for (const std::string& text : grouped(texts)) notice(args, text);
 }
 
-void complain(const std::string& message)
-{
-    clear_progress_bar();
-    std::cerr << "spawnfield: " << message << "\n";
-}
-
 Progress progress_bar(const CommonArgs& args, const std::string& label, bool throws)
 {
-    const bool shown = !args.quiet && isatty(STDERR_FILENO) != 0;
-    using Clock = std::chrono::steady_clock;
-    auto last = std::make_shared<Clock::time_point>(Clock::now());
-    return [=](double share) {
-        if (throws) stop_if_interrupted();
-        const auto now = Clock::now();
-        if (!shown || now - *last < std::chrono::milliseconds(100)) return;
-        *last = now;
-        const int width = 30, full = int(share * width);
-        std::fprintf(stderr, "\r%s [%s%s] %3d %%", label.c_str(), std::string(full, '#').c_str(),
-                     std::string(width - full, ' ').c_str(), int(share * 100));
-        bar_shown = true;
+    const Progress show = args.quiet ? Progress{} : args.host->show_progress(label);
+    return [show, throws, host = args.host](double share) {
+        if (throws && host->is_interrupted()) throw Interrupted{};
+        if (show) show(share);
     };
 }
 
-void clear_progress_bar()
+void clear_progress_bar(const CommonArgs& args) { args.host->hide_progress(); }
+
+void stop_if_interrupted(const CommonArgs& args)
 {
-    if (bar_shown) std::fprintf(stderr, "\r%70s\r", "");
-    bar_shown = false;
+    if (args.host->is_interrupted()) throw Interrupted{};
+}
+
+StopRequest stop_request(const CommonArgs& args)
+{
+    return [host = args.host] { return host->is_interrupted(); };
+}
+
+bool end_interruptible_work(const CommonArgs& args, bool has_found)
+{
+    if (!args.host->is_interrupted()) return false;
+    if (!has_found) throw Interrupted{};
+    args.host->forget_interruption();
+    return true;
 }
 
 }  // namespace spawnfield::cli

@@ -1,35 +1,31 @@
 #include "output.h"
 
-#include "interrupt.h"
+#include "host.h"
 #include "messages.h"
 #include "streams.h"
 
-#include <spawnfield/error.h>
 #include <spawnfield/output_file.h>
-
-#include <iostream>
 
 namespace spawnfield::cli {
 
-void write_output(const std::string& file,
+void write_output(const CommonArgs& args, const std::string& file,
                   const std::function<void(const std::function<void(std::string_view)>&)>& writer,
                   const std::function<void()>& then)
 {
-    clear_progress_bar();
+    clear_progress_bar(args);
     if (file.empty() || is_standard(file)) {
-        writer([](std::string_view text) { std::cout << text; });
-        std::cout.flush();
-        if (!std::cout) throw OutputError("standard output", "cannot be written");
+        if (args.host->wants_text()) writer([&](std::string_view text) { args.host->write(text); });
+        args.host->flush();
         then();
         return;
     }
     OutputFile out(file);
     writer([&](std::string_view text) {
-        stop_if_interrupted();
+        stop_if_interrupted(args);
         out.write(text);
     });
     out.flush();
-    stop_if_interrupted();
+    stop_if_interrupted(args);
     then();
     out.commit();
 }

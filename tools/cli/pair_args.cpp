@@ -86,15 +86,15 @@ PairOptions pair_options(const PairArgs& args, const CLI::App& command, bool is_
     return out;
 }
 
-void write_pairs(const PairArgs& args, const std::string& format, const std::string& out, const Session& session,
-                 const PairList& list, const PairOptions& options)
+void write_pairs(const CommonArgs& common, const PairArgs& args, const std::string& format, const std::string& out,
+                 const Session& session, const PairList& list, const PairOptions& options)
 {
     const auto write_paths = [&] {
         const double lift = session.judge->options().stand.lift;
-        if (!args.path.empty()) write_output(args.path, [&](const auto& sink) { sink(paths_csv(list, lift)); });
+        if (!args.path.empty()) write_output(common, args.path, [&](const auto& sink) { sink(paths_csv(list, lift)); });
     };
     write_output(
-        out, [&](const auto& sink) { sink(text_of(args, format, session, list, options)); }, write_paths);
+        common, out, [&](const auto& sink) { sink(text_of(args, format, session, list, options)); }, write_paths);
 }
 
 std::string shortfall_of_pairs(const PairList& list, std::size_t wanted)

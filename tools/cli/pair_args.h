@@ -37,8 +37,8 @@ void refuse_pair_options(const CLI::App& command, const std::string& format);
 PairOptions pair_options(const PairArgs& args, const CLI::App& command, bool is_settled, const std::string& format);
 
 /// Writes the pairs to the file `out`, and the paths if they are wanted: both files, or none.
-void write_pairs(const PairArgs& args, const std::string& format, const std::string& out, const Session& session,
-                 const PairList& list, const PairOptions& options);
+void write_pairs(const CommonArgs& common, const PairArgs& args, const std::string& format, const std::string& out,
+                 const Session& session, const PairList& list, const PairOptions& options);
 
 /// Returns why there are fewer pairs than wanted, and what may give more.
 std::string shortfall_of_pairs(const PairList& list, std::size_t wanted);

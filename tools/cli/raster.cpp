@@ -4,6 +4,7 @@
 #include "output.h"
 #include "picture_args.h"
 #include "raster_args.h"
+#include "results.h"
 #include "spelling.h"
 #include "streams.h"
 #include "thesis_output.h"
@@ -106,7 +107,7 @@ Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summar
     notices_about_stance(args, command, session.robot);
     notice_about_heading(args, session.map, options.heading);
     summary.lap("load");
-    const RasterResult result = raster(*session.judge, options);
+    RasterResult result = raster(*session.judge, options);
     summary.lap("query");
     const auto draw = [&] {
         if (!picture_to) return;
@@ -119,7 +120,7 @@ Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summar
     };
     if (folder)
         write_thesis(
-            *folder, settings_of(args, session, options, result.grid), result.counts, summary,
+            args, *folder, settings_of(args, session, options, result.grid), result.counts, summary,
             [&](const auto& into) {
                 return write_thesis_locations(into, result, args.write_aerial, progress_bar(args, "writing"));
             },
@@ -128,8 +129,9 @@ Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summar
         draw();
     else
         write_output(
-            args.out, [&](const auto& sink) { write_table(args, result, sink, summary); }, draw);
+            args, args.out, [&](const auto& sink) { write_table(args, result, sink, summary); }, draw);
     summary.set_verdicts(result.counts, result.exact_checks);
+    keep(args, FoundRaster{std::move(result)});
     return {};
 }
 

@@ -1,5 +1,6 @@
 #include "session.h"
 
+#include "host.h"
 #include "messages.h"
 #include "numbers.h"
 #include "streams.h"
@@ -41,10 +42,10 @@ Session open_session(const QueryArgs& args, Summary& summary)
     const JudgeOptions options = judge_options(args, summary.exact_time);
     Session session;
     if (!args.robot.empty()) {
-        session.robot = load_robot(args.robot, robot_options(args));
-        notices(args, session.robot.notices);
+        session.robot = open_robot(args, args.robot, robot_options(args));
     }
-    session.map = read_map(args.map);
+    const Map* const in_memory = args.host->input<Map>(args.map);
+    session.map = in_memory != nullptr ? *in_memory : read_map(args.map);
     notice_if_old(args, session.map);
     if (args.has_changes()) session.map = changed_map(args, args, args.model_paths, std::move(session.map));
     summary.map_hash = session.map.hash;
@@ -55,8 +56,25 @@ Session open_session(const QueryArgs& args, Summary& summary)
     return session;
 }
 
+Robot open_robot(const CommonArgs& args, const std::string& file, const RobotOptions& options)
+{
+    if (const Robot* const robot = args.host->input<Robot>(file)) return *robot;
+    Robot robot = load_robot(file, options);
+    notices(args, robot.notices);
+    return robot;
+}
+
+Scene open_scene(const CommonArgs& args, const std::string& file, const SceneOptions& options)
+{
+    if (const Scene* const scene = args.host->input<Scene>(file)) return *scene;
+    Scene scene = load_scene(file, options);
+    notices(args, scene.notices);
+    return scene;
+}
+
 PoseTable open_poses(const CommonArgs& args, const std::string& file)
 {
+    if (const PoseTable* const table = args.host->input<PoseTable>(file)) return *table;
     PoseTable table = is_standard(file) ? parse_poses(read_standard_input(), input_name(file), args.allow_empty)
                                         : read_poses(file, args.allow_empty);
     for (const std::string& text : table.notices) notice(args, text);

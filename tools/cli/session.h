@@ -22,6 +22,12 @@ struct Session {
 /// of range, before it reads anything.
 Session open_session(const QueryArgs& args, Summary& summary);
 
+/// Reads a robot, and prints its notices. A robot in memory (Host::inputs) is used as it is.
+Robot open_robot(const CommonArgs& args, const std::string& file, const RobotOptions& options);
+
+/// Reads a scene, and prints its notices. A scene in memory is used as it is.
+Scene open_scene(const CommonArgs& args, const std::string& file, const SceneOptions& options);
+
 /// Reads poses from a CSV file, or from standard input if it is `-`. Prints the file's notices.
 PoseTable open_poses(const CommonArgs& args, const std::string& file);
 

@@ -1,6 +1,5 @@
 #include "simulator_output.h"
 
-#include "interrupt.h"
 #include "messages.h"
 #include "numbers.h"
 #include "output.h"
@@ -341,7 +340,7 @@ void SimulatorOutput::write(std::span<const RobotStart> robots, const Map& map,
 {
     if (is("isaaclab")) return write_isaac_lab(robots, map);
     const std::string text = is("json") ? json() : text_of(robots);
-    write_output(target_.out, [&](const auto& sink) { sink(text); });
+    write_output(common_, target_.out, [&](const auto& sink) { sink(text); });
 }
 
 void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const Map& map) const
@@ -361,14 +360,14 @@ void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const 
     about["terrain_origins.npy"] = {{"shape", {grid.rows, grid.cols, 3}}, {"is", "the first patch of each tile"}};
     about["map"] = {{"name", map.name}, {"hash", map.hash}};
     if (!map.changes.empty()) about["map"]["changes"] = map.changes;
-    clear_progress_bar();
+    clear_progress_bar(common_);
     const fs::path& into = folder_->path();
     write_file_atomically(into / "root_pose.npy",
                           root_poses_npy(robots, has_w_first ? QuaternionOrder::Wxyz : QuaternionOrder::Xyzw));
     write_file_atomically(into / "flat_patches.npy", patches.flat_patches);
     write_file_atomically(into / "terrain_origins.npy", patches.terrain_origins);
     write_file_atomically(into / "isaaclab.json", about.dump(2) + "\n");
-    stop_if_interrupted();
+    stop_if_interrupted(common_);
     folder_->commit();
 }
 

@@ -4,13 +4,13 @@
 #include "command.h"
 #include "fleet_args.h"
 #include "ground_args.h"
-#include "interrupt.h"
 #include "messages.h"
 #include "numbers.h"
 #include "output.h"
 #include "pair_args.h"
 #include "place_args.h"
 #include "reach_args.h"
+#include "results.h"
 #include "simulator_output.h"
 #include "spawn_advice.h"
 #include "spawn_args.h"
@@ -131,7 +131,8 @@ void write(const SpawnArgs& args, const SimulatorOutput& output, const Session& 
         output.give_names(robots);
         for (const RobotStart& robot : robots) names.push_back(robot.name);
     }
-    if (args.format == "csv") return write_output(args.out, [&](const auto& sink) { sink(spawns_csv(list, names)); });
+    if (args.format == "csv")
+        return write_output(args, args.out, [&](const auto& sink) { sink(spawns_csv(list, names)); });
     output.write(robots, session.map, [&] { return spawns_json(robots, list, *session.judge, options); });
 }
 
@@ -218,22 +219,27 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
     summary.lap("load");
     const std::string hopeless = query.before_draws(session, options);
     options.progress = progress_bar(args, command, false);
-    options.stop = is_interrupted;
-    const SpawnList list = hopeless.empty() ? query.run(*session.judge, options) : nothing_drawn();
-    summary.is_interrupted = end_interruptible_work(!list.spawns.empty());
+    options.stop = stop_request(args);
+    SpawnList list = hopeless.empty() ? query.run(*session.judge, options) : nothing_drawn();
+    summary.is_interrupted = end_interruptible_work(args, !list.spawns.empty());
     if (command == "sample") summary.fullness = {list.is_full, list.undecided_area};
     summary.lap("query");
     notice_about_double_ground(args, list);
     if (!summary.is_interrupted) query.after_draws(session, list);
     if (folder)
-        write_thesis(*folder, settings_of(args, session, options, list, command, own), list.counts, summary,
+        write_thesis(args, *folder, settings_of(args, session, options, list, command, own), list.counts, summary,
                      [&](const auto& into) { return write_thesis_locations(into, list); });
     else
         write(args, *output, session, options, list);
     fill(summary, options, list);
-    if (summary.is_interrupted) return interrupted_ending(list.spawns.size(), "spawn", options.count);
-    if (list.spawns.size() == options.count) return {};
-    return {.status = fewer_found, .notice = hopeless.empty() ? shortfall(options, args, list, command) : hopeless};
+    Ending ending;
+    if (summary.is_interrupted)
+        ending = interrupted_ending(list.spawns.size(), "spawn", options.count);
+    else if (list.spawns.size() < options.count)
+        ending = {.status = fewer_found,
+                  .notice = hopeless.empty() ? shortfall(options, args, list, command) : hopeless};
+    keep(args, FoundSpawns{std::move(list)});
+    return ending;
 }
 
 Ending run_search(const SpawnArgs& args, const CLI::App& command, Summary& summary)
@@ -313,17 +319,21 @@ Ending run_pairs(const SpawnArgs& args, const CLI::App& command, Summary& summar
         options.spawns.reachable_name = words_of(islands);
     }
     options.spawns.progress = progress_bar(args, "sample", false);
-    options.spawns.stop = is_interrupted;
-    const PairList list = sample_pairs(*session.judge, graph, options);
-    summary.is_interrupted = end_interruptible_work(!list.pairs.empty());
+    options.spawns.stop = stop_request(args);
+    PairList list = sample_pairs(*session.judge, graph, options);
+    summary.is_interrupted = end_interruptible_work(args, !list.pairs.empty());
     summary.lap("query");
-    write_pairs(args.pairs, args.format, args.out, session, list, options);
+    write_pairs(args, args.pairs, args.format, args.out, session, list, options);
     summary.seed = options.spawns.seed;
     summary.extra.push_back(std::to_string(list.pairs.size()) + " of " + std::to_string(options.spawns.count) +
                             " pairs, " + counted(list.searches, "path") + " searched");
-    if (summary.is_interrupted) return interrupted_ending(list.pairs.size(), "pair", options.spawns.count);
-    if (list.pairs.size() == options.spawns.count) return {};
-    return {.status = fewer_found, .notice = shortfall_of_pairs(list, options.spawns.count)};
+    Ending ending;
+    if (summary.is_interrupted)
+        ending = interrupted_ending(list.pairs.size(), "pair", options.spawns.count);
+    else if (list.pairs.size() < options.spawns.count)
+        ending = {.status = fewer_found, .notice = shortfall_of_pairs(list, options.spawns.count)};
+    keep(args, FoundPairs{std::move(list), session.judge->options().stand.lift});
+    return ending;
 }
 
 Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summary)

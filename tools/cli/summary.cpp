@@ -1,6 +1,6 @@
 #include "summary.h"
 
-#include "messages.h"
+#include "host.h"
 #include "numbers.h"
 #include "output.h"
 #include "streams.h"
@@ -13,7 +13,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <thread>
 
 namespace spawnfield::cli {
@@ -128,15 +127,14 @@ void Summary::finish()
     const double total = elapsed();
     if (!args_.summary.empty()) {
         if (is_standard(args_.summary)) {
-            write_output(args_.summary, [&](const auto& sink) { sink(json(total)); });
+            write_output(args_, args_.summary, [&](const auto& sink) { sink(json(total)); });
         } else {
             if (!file_) file_.emplace(args_.summary);
             file_->write(json(total));
             file_->commit();
         }
     }
-    clear_progress_bar();
-    if (!args_.quiet) std::cerr << line(total) << "\n";
+    args_.host->summarize(line(total), json(total), args_.quiet);
 }
 
 }  // namespace spawnfield::cli

@@ -1,6 +1,5 @@
 #include "thesis_output.h"
 
-#include "interrupt.h"
 #include "messages.h"
 #include "numbers.h"
 
@@ -37,18 +36,19 @@ std::unique_ptr<OutputFolder> thesis_folder(const std::string& out)
     return std::make_unique<OutputFolder>(out, holds_only(thesis_files, "thesis result"));
 }
 
-void write_thesis(OutputFolder& folder, const Settings& settings, const VerdictCounts& counts, const Summary& summary,
+void write_thesis(const CommonArgs& args, OutputFolder& folder, const Settings& settings, const VerdictCounts& counts,
+                  const Summary& summary,
                   const std::function<ThesisCounts(const std::filesystem::path&)>& write_locations,
                   const std::function<void()>& then)
 {
-    clear_progress_bar();
+    clear_progress_bar(args);
     const ThesisCounts written = write_locations(folder.path());
     write_file_atomically(folder.path() / "Stats.txt", thesis_stats(settings, counts, written));
     write_file_atomically(folder.path() / "RunTime.txt", "Load (s): " + number(summary.seconds_of("load")) +
                                                              "\nQuery (s): " + number(summary.seconds_of("query")) +
                                                              "\nTotal (s): " + number(summary.elapsed()) + "\n");
     then();
-    stop_if_interrupted();
+    stop_if_interrupted(args);
     folder.commit();
 }
 

@@ -20,8 +20,8 @@ std::unique_ptr<OutputFolder> thesis_folder(const std::string& out);
 /// Writes all files of the folder. The folder gets its name when they and `then` succeed. `write_locations` writes the
 /// files of locations into the given folder.
 void write_thesis(
-    OutputFolder& folder, const Settings& settings, const VerdictCounts& counts, const Summary& summary,
-    const std::function<ThesisCounts(const std::filesystem::path&)>& write_locations,
+    const CommonArgs& args, OutputFolder& folder, const Settings& settings, const VerdictCounts& counts,
+    const Summary& summary, const std::function<ThesisCounts(const std::filesystem::path&)>& write_locations,
     const std::function<void()>& then = [] {});
 
 }  // namespace spawnfield::cli

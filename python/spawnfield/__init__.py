@@ -1,0 +1,26 @@
+"""spawnfield: where can this robot stand in this world?
+
+    import spawnfield as sf
+
+    world = sf.bake("maps/training/scene.yaml")
+    robot = sf.Robot("maps/robots/husky.yaml")
+    spawns = world.sample(robot, 100, min_distance=1.0, yaw="random", seed=7)
+    print(spawns.pose[:3])
+
+Lengths are in metres and angles in radians, x forward, y left, z up (REP-103). Notices go to the logger "spawnfield".
+"""
+
+from ._core import version as _version
+from .errors import ArgumentError, FileError, NothingFits, NotValid, SpawnfieldError
+from .options import options
+from .pool import Pool
+from .results import VALID, VERDICTS, Fleet, Pairs, Picture, Raster, Spawns, Verdicts
+from .robot import Robot
+from .scene import Scene
+from .world import World, bake, info, open
+
+__version__ = _version()
+__all__ = [
+    "VALID", "VERDICTS", "ArgumentError", "FileError", "Fleet", "NotValid", "NothingFits", "Pairs", "Picture", "Pool",
+    "Raster", "Robot", "Scene", "SpawnfieldError", "Spawns", "Verdicts", "World", "bake", "info", "open", "options",
+]  # fmt: skip

@@ -1,0 +1,340 @@
+"""What the queries return: values as numpy arrays, and the same files as the command line program writes.
+
+All lengths are in metres and angles in radians. The frame is that of the world: x forward, y left, z up (REP-103).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _core
+
+#: Verdicts by their code, which is their number in files.
+VERDICTS = {
+    0: "outside", 1: "aerial", 2: "off_terrain", 3: "submerged", 4: "collision", 5: "steep", 6: "unstable",
+    7: "valid", 8: "obstructed", 9: "unreachable",
+}  # fmt: skip
+VALID = 7
+
+
+class Table:
+    """Columns of equal length, one row for each pose.
+
+    Each column is an attribute, for example ``spawns.yaw``.
+
+    Attributes:
+        columns: all columns by their names.
+        summary: the summary of the query, as of ``--summary``.
+    """
+
+    def __init__(self, columns: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> None:
+        self.columns = dict(columns)
+        self.summary = dict(summary)
+
+    def __getattr__(self, name: str) -> np.ndarray:
+        columns = self.__dict__.get("columns", {})
+        if name in columns:
+            return columns[name]
+        raise AttributeError(f"{type(self).__name__} has no {name!r}; it has {', '.join(columns)}")
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.columns]
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values())))
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({len(self)}: {', '.join(self.columns)})"
+
+    def to_pandas(self) -> Any:
+        """Returns a pandas.DataFrame; poses become the columns x, y, z, qx, qy, qz, qw, with the name as a prefix
+        unless the name is ``pose``."""
+        import pandas as pd
+
+        frame = {}
+        for name, values in self.columns.items():
+            if values.ndim == 1:
+                frame[name] = values
+                continue
+            prefix = "" if name == "pose" else name + "_"
+            for k, axis in enumerate(("x", "y", "z", "qx", "qy", "qz", "qw")):
+                frame[prefix + axis] = values[:, k]
+        return pd.DataFrame(frame)
+
+
+def write_bytes(data: bytes, file: str | os.PathLike[str] | None) -> bytes:
+    """Writes bytes to a file, completely or not at all, unless it is None. Returns them."""
+    if file is not None:
+        path = Path(file)
+        part = path.with_name(f".{path.name}.{os.getpid()}.part")
+        try:
+            part.write_bytes(data)
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)
+    return data
+
+
+class Spawns(Table):
+    """Valid poses of ``World.sample`` and ``World.search``, in the order in which they were found.
+
+    Attributes:
+        pose: (n, 7) float64: x, y, z in m and a quaternion x, y, z, w, of the robot's origin in the world.
+        roll, pitch, yaw: (n,) float64, rad, as in URDF's rpy.
+        tilt, margin: (n,) float64, rad and m, only of settled robots; see docs/standing.md.
+        clearance, head_room, …: (n,) float64, those of the option ``columns``.
+        counts: number of judged positions for each verdict.
+        is_full: fewer spawns than wanted were found, and it is proven that no other one fits.
+        undecided_area: m2 in which another one may fit; NaN if nothing is proven.
+    """
+
+    def __init__(self, found: _core.FoundSpawns, summary: Mapping[str, Any]) -> None:
+        super().__init__(found.columns(), summary)
+        self._found = found
+        facts = found.facts()
+        self.counts: dict[str, int] = facts["counts"]
+        self.draws: int = facts["draws"]
+        self.is_full: bool = facts["is_full"]
+        self.undecided_area: float = facts["undecided_area"]
+
+    @property
+    def position(self) -> np.ndarray:
+        """(n, 3) float64, m: a view of `pose`."""
+        return self.pose[:, :3]
+
+    @property
+    def verdict(self) -> np.ndarray:
+        """(n,) uint8: all are VALID."""
+        return np.full(len(self), VALID, np.uint8)
+
+    def to_csv(self, file: str | os.PathLike[str] | None = None) -> bytes:
+        """Returns the CSV file that ``spawnfield sample`` writes, and writes it to `file` if that is given."""
+        return write_bytes(self._found.csv(), file)
+
+
+class Pairs(Table):
+    """Starts and goals of ``World.sample(pairs=N)``.
+
+    Attributes:
+        start, goal: (n, 7) float64: x, y, z in m and a quaternion x, y, z, w.
+        path_length, straight, detour: (n,) float64: m, m, and their ratio.
+        island: (n,) int64, as in ``info(islands=True)``.
+    """
+
+    def __init__(self, found: _core.FoundPairs, summary: Mapping[str, Any]) -> None:
+        super().__init__(found.columns(), summary)
+        self._found = found
+
+    @property
+    def paths(self) -> list[np.ndarray]:
+        """For each pair the poses of its path, (k, 7) float64. Empty arrays unless the option ``path`` was given."""
+        return self._found.paths()
+
+
+class Fleet(Table):
+    """Robots of ``World.sample(fleet=FILE)``.
+
+    Attributes:
+        pose: (n, 7) float64: x, y, z in m and a quaternion x, y, z, w.
+        kind: (n,) int64, index in `kinds`.
+        names: the names of the robots.
+        kinds: the names of the kinds.
+    """
+
+    def __init__(self, found: _core.FoundFleet, summary: Mapping[str, Any]) -> None:
+        super().__init__(found.columns(), summary)
+        self.names: list[str] = found.names()
+        self.kinds: list[str] = found.kinds()
+
+
+class Verdicts(Table):
+    """The verdicts of ``World.check``, one for each pose.
+
+    Attributes:
+        code: (n,) uint8, see VERDICTS.
+        ground: (n,) float64, height of the ground, m; NaN: there is none.
+        settled: (n, 7) float64, only of settled robots: the pose at rest, not raised; NaN: it has no room.
+        tilt, margin, tip_over, belly: (n,) float64, only of settled robots; rad, m, rad, m; see docs/standing.md.
+        repair, repair_distance: (n, 7) and (n,) float64, only with the option ``repair``: the nearest valid pose, and
+            how far it is, m; NaN: the pose is valid, or there is none.
+    """
+
+    def __init__(self, found: _core.FoundVerdicts, summary: Mapping[str, Any]) -> None:
+        super().__init__(found.columns(), summary)
+        self._found = found
+
+    @property
+    def valid(self) -> np.ndarray:
+        """(n,) bool."""
+        return self.code == VALID
+
+    @property
+    def name(self) -> list[str]:
+        """The verdict of each pose in words: "valid", "collision", …"""
+        return [VERDICTS[code] for code in self.code.tolist()]
+
+    @property
+    def hit(self) -> list[str]:
+        """The part of the world that the robot meets at each pose; "" if it meets none, or if that is not known."""
+        parts = self._found.parts()
+        names = {-1: "", -2: "occupancy"}
+        return [names[part] if part < 0 else parts[part] for part in self.hit_part.tolist()]
+
+    @property
+    def reason(self) -> list[str]:
+        """The verdict of each pose and its cause in words, for example "collision with thin_wall"."""
+        return [self._found.reason(i) for i in range(len(self))]
+
+    def contacts(self, index: int) -> dict[str, np.ndarray]:
+        """Returns where a settled robot touches the ground: `point` and `normal`, both of shape (k, 3), m."""
+        return self._found.contacts(range(len(self))[index])
+
+    def to_csv(self, file: str | os.PathLike[str] | None = None) -> bytes:
+        """Returns the CSV file that ``spawnfield check`` writes, and writes it to `file` if that is given."""
+        return write_bytes(self._found.csv(), file)
+
+
+class Raster(Table):
+    """The verdicts of ``World.raster``: one row for each pose, as in the CSV file.
+
+    Attributes:
+        pose: (n, 7) float64: x, y, z in m and a quaternion x, y, z, w.
+        verdict: (n,) uint8, see VERDICTS.
+        layer: (n,) int32: the layer of ground, 0 is the highest; -1: the ground is not a layer.
+        row, col: (n,) int32, place in the grid: y = y0 + row * step, x = x0 + col * step.
+        layer_height, roll, pitch, yaw, tilt, margin, tip_over, belly: (n,) float64, only of settled robots.
+        grid: x0, y0, z0, step, step_z (m), cols, rows, heights, dims.
+        counts: number of poses for each verdict.
+    """
+
+    def __init__(self, found: _core.FoundRaster, summary: Mapping[str, Any], threads: int) -> None:
+        super().__init__(found.columns(), summary)
+        self._found = found
+        self._threads = threads
+        self.grid: dict[str, Any] = found.facts()
+        self.counts: dict[str, int] = self.grid.pop("counts")
+
+    def _levels(self) -> np.ndarray:
+        """(n,) int: of 2D rasters, how many poses of the same column come before; of 3D rasters, the number of the
+        height."""
+        if self.grid["dims"] == 3:
+            return np.rint((self.pose[:, 2] - self.grid["z0"]) / self.grid["step_z"]).astype(np.int64)
+        columns = self.row.astype(np.int64) * self.grid["cols"] + self.col
+        first = np.flatnonzero(np.diff(columns, prepend=-1))
+        return np.arange(len(columns)) - np.repeat(first, np.diff(first, append=len(columns)))
+
+    def image(self, name: str = "verdict", fill: float | None = None) -> np.ndarray:
+        """Returns a column as an image.
+
+        Args:
+            name: of the column; "z" for the height of the poses, m.
+            fill: the value of places without a pose: by default NaN, or 255 for verdicts.
+
+        Returns:
+            (levels, rows, cols), y ascending along the rows. For 2D rasters, level 0 has the highest pose of each
+            column. For 3D rasters, levels are heights; poses that ``snap`` put between two of them have the nearest
+            one, and free poses high above the ground have no row.
+        """
+        values = self.pose[:, 2] if name == "z" else self.columns[name]
+        if fill is None:
+            fill = 255 if name == "verdict" else np.nan
+        level = self._levels()
+        levels = self.grid["heights"] if self.grid["dims"] == 3 else int(level.max(initial=-1)) + 1
+        dtype = values.dtype if name == "verdict" else float
+        out = np.full((max(levels, 1), self.grid["rows"], self.grid["cols"]), fill, dtype)
+        out[np.clip(level, 0, max(levels, 1) - 1), self.row, self.col] = values
+        return out
+
+    def to_xarray(self) -> Any:
+        """Returns an xarray.Dataset with the dimensions level (2D) or z (3D), y and x, and units. Needs xarray."""
+        import xarray as xr
+
+        grid = self.grid
+        is_3d = grid["dims"] == 3
+        units = {"z": "m", "layer_height": "m", "tilt": "rad", "margin": "m", "tip_over": "rad", "belly": "m",
+                 "roll": "rad", "pitch": "rad", "yaw": "rad"}  # fmt: skip
+        first = "z" if is_3d else "level"
+        names = ["verdict", *(n for n in ("z", *self.columns) if n in units and not (is_3d and n == "z"))]
+        data = {}
+        for name in names:
+            attributes = {"units": units[name]} if name in units else {
+                "flag_values": np.array(list(VERDICTS), np.uint8), "flag_meanings": " ".join(VERDICTS.values()),
+            }  # fmt: skip
+            data[name if name != "z" else "height"] = ((first, "y", "x"), self.image(name), attributes)
+        levels = next(iter(data.values()))[1].shape[0]
+        metres = {"units": "m"}
+        coordinates = {
+            "x": ("x", grid["x0"] + grid["step"] * np.arange(grid["cols"]), metres),
+            "y": ("y", grid["y0"] + grid["step"] * np.arange(grid["rows"]), metres),
+            first: (first, grid["z0"] + grid["step_z"] * np.arange(levels), metres) if is_3d
+            else (first, np.arange(levels)),
+        }  # fmt: skip
+        return xr.Dataset(data, coordinates, {"frame": "x forward, y left, z up (REP-103)"})
+
+    def to_csv(self, file: str | os.PathLike[str] | None = None, write_aerial: bool = False) -> bytes:
+        """Returns the CSV file that ``spawnfield raster`` writes, and writes it to `file` if that is given."""
+        return write_bytes(self._found.csv(write_aerial, self._threads), file)
+
+
+class Picture:
+    """A picture. Notebooks show it.
+
+    Attributes:
+        data: the bytes of the file.
+        format: "png", "svg" or "pdf".
+    """
+
+    def __init__(self, data: bytes, format: str, summary: Mapping[str, Any]) -> None:
+        self.data = data
+        self.format = format
+        self.summary = dict(summary)
+
+    def _repr_png_(self) -> bytes | None:
+        return self.data if self.format == "png" else None
+
+    def _repr_svg_(self) -> str | None:
+        return self.data.decode() if self.format == "svg" else None
+
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Writes the file, completely or not at all."""
+        write_bytes(self.data, file)
+
+    def show(self, ax: Any = None) -> Any:
+        """Shows the picture in a notebook, or draws it on a matplotlib axis if one is given. Outside of notebooks, it
+        opens a window of matplotlib. Returns the axis, if there is one."""
+        if ax is None and _is_notebook():
+            from IPython.display import display
+
+            display(self)
+            return None
+        import matplotlib.image
+        import matplotlib.pyplot as plt
+        from io import BytesIO
+
+        is_own = ax is None
+        if is_own:
+            ax = plt.figure(layout="constrained").add_subplot()
+        ax.imshow(matplotlib.image.imread(BytesIO(self.data), format=self.format))
+        ax.set_axis_off()
+        if is_own:
+            plt.show()
+        return ax
+
+
+def _is_notebook() -> bool:
+    try:
+        from IPython import get_ipython
+    except ImportError:
+        return False
+    shell = get_ipython()
+    return shell is not None and shell.__class__.__name__ == "ZMQInteractiveShell"
+
+
+def verdict_names(codes: Sequence[int] | np.ndarray) -> list[str]:
+    """Returns the verdicts with these codes in words."""
+    return [VERDICTS[int(code)] for code in codes]

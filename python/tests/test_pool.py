@@ -1,0 +1,134 @@
+"""The pool: no repetition, distances, weights, worlds, files, and the same draws for the same seed."""
+
+import time
+
+import numpy as np
+import pytest
+
+import spawnfield as sf
+
+
+@pytest.fixture(scope="module")
+def pool(world, robot):
+    return sf.Pool(world, robot, 2000, seed=4, background=False)
+
+
+def fresh(pool, **options):
+    return sf.Pool.from_columns(pool.columns, **options)
+
+
+def test_rows_are_valid(pool, world, robot):
+    assert len(pool) == 2000 and world.check(robot, pool.columns["pose"]).valid.all()
+    assert len(np.unique(pool.columns["pose"], axis=0)) == 2000
+
+
+def test_no_repetition_until_exhausted(pool):
+    pool = fresh(pool)
+    drawn = np.concatenate([pool.draw(300).index for _ in range(6)])
+    assert len(np.unique(drawn)) == 1800 and pool.epoch.tolist() == [0]
+    over = pool.draw(300).index  # the last 200, and 100 of the next epoch
+    assert len(np.unique(over)) == 300 and pool.epoch.tolist() == [1]
+    assert set(over[:200]) == set(range(2000)) - set(drawn)
+    rest = np.concatenate([over[200:], *(pool.draw(380).index for _ in range(5))])
+    assert len(np.unique(rest)) == 2000
+
+
+def test_same_seed_same_draws(world, robot):
+    slow = sf.Pool(world, robot, 40000, seed=9)
+    first = [slow.draw(251).pose for _ in range(20)]  # while the pool is being made
+    full = sf.Pool(world, robot, 40000, seed=9, background=False, threads=1)
+    assert all((full.draw(251).pose == poses).all() for poses in first)
+    assert (sf.Pool(world, robot, 40000, seed=10, background=False).draw(251).pose != first[0]).any()
+
+
+def test_mask_fills_rows(pool):
+    pool = fresh(pool)
+    poses = np.zeros((4096, 7))
+    mask = np.zeros(4096, bool)
+    mask[5::16] = True
+    drawn = pool.draw(mask, out=poses)
+    assert (poses[mask] == drawn.pose).all() and (poses[~mask] == 0).all()
+    with pytest.raises(sf.ArgumentError, match="of bool"):
+        pool.draw(np.zeros(10))
+
+
+def test_min_distance(pool):
+    pool = fresh(pool)
+    seen = []
+    for _ in range(12):
+        drawn = pool.draw(20, min_distance=2.0)
+        gaps = np.linalg.norm(drawn.pose[:, None, :3] - drawn.pose[None, :, :3], axis=-1)
+        assert gaps[~np.eye(20, dtype=bool)].min() >= 2.0
+        seen.append(drawn.index)
+    assert len(np.unique(np.concatenate(seen))) == 240  # rows that were left out come later, once
+    rest = pool.draw(2000 - 240).index
+    assert len(np.unique(np.concatenate([*seen, rest]))) == 2000
+    with pytest.raises(sf.ArgumentError, match="only .* are that far apart"):
+        fresh(pool).draw(500, min_distance=5.0)
+
+
+def test_weights(pool):
+    columns = pool.columns
+    pool = fresh(pool)
+    pool.weigh(lambda rows: (rows["pose"][:, 0] > 0) * 9.0 + 1.0)
+    right = pool.draw(200).pose[:, 0] > 0
+    share = (columns["pose"][:, 0] > 0).mean()
+    expected = 9 * share * 10 / 9 / (10 * share + 1 - share)
+    assert right.mean() == pytest.approx(expected, abs=0.1)
+    pool.weigh((columns["pose"][:, 0] > 0).astype(float))
+    assert (pool.draw(200).pose[:, 0] > 0).all()
+    pool.weigh(None)
+    assert len(np.unique(np.concatenate([pool.draw(800).index, pool.draw(800).index]))) == 1600
+    with pytest.raises(sf.ArgumentError, match="numbers >= 0"):
+        pool.weigh(-columns["pose"][:, 0])
+
+
+def test_several_worlds(world, robot):
+    low = sf.bake(sf.Scene("low").add_box((10, 10, 1), (0, 0, -100.5), label="terrain"))
+    pool = sf.Pool([world, low], robot, 300, background=False)
+    number = np.arange(100) % 2
+    drawn = pool.draw(100, world=number)
+    assert ((drawn.pose[:, 2] < -99) == (number == 1)).all() and (drawn.world == number).all()
+    poses = np.zeros((100, 7))
+    pool.draw(number == 1, poses, world=number)
+    assert (poses[number == 1, 2] < -99).all() and (poses[number == 0] == 0).all()
+    assert len(pool.columns["pose"]) == 600 and set(pool.columns["world"]) == {0, 1}
+    with pytest.raises(sf.ArgumentError, match="there are 2 worlds"):
+        pool.draw(3, world=2)
+
+
+def test_save_and_load(pool, tmp_path):
+    pool.save(tmp_path / "pool.npz")
+    again = sf.Pool.load(tmp_path / "pool.npz")
+    assert (again.draw(50).pose == fresh(pool).draw(50).pose).all()
+    assert again.columns.keys() == pool.columns.keys()
+
+
+def test_pairs(world, robot):
+    pool = sf.Pool(world, robot, 50, pairs=True, min_path=2, reach_step=0.4, background=False)
+    drawn = pool.draw(20)
+    assert drawn.start.shape == drawn.goal.shape == (20, 7) and (drawn.path_length >= 2).all()
+
+
+def test_faults(world, robot):
+    scene = sf.Scene().add_box((2, 2, 1), label="terrain").add_box((4, 4, 1), (0, 0, 1))  # covered by an obstacle
+    nothing = sf.bake(scene)
+    with pytest.raises(sf.ArgumentError, match="no valid pose was found"):
+        sf.Pool(nothing, robot, 10).draw(1)
+    with pytest.raises(sf.ArgumentError, match="--min-path"):
+        sf.Pool(world, robot, 10, min_path=3).draw(1)
+    with pytest.raises(sf.ArgumentError, match="has 2000 rows"):
+        sf.Pool.from_columns({"pose": np.zeros((2000, 7))}).draw(2001)
+
+
+def test_draws_are_quick(pool):
+    pool = fresh(pool)
+    poses = np.zeros((4096, 7))
+    mask = np.zeros(4096, bool)
+    mask[::17] = True
+    times = []
+    for _ in range(7):
+        begun = time.perf_counter()
+        pool.draw(mask, out=poses)
+        times.append(time.perf_counter() - begun)
+    assert min(times) < 0.005  # about 30 us; the limit only finds work that grows with the pool

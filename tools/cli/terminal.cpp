@@ -1,0 +1,92 @@
+#include "terminal.h"
+
+#include <spawnfield/error.h>
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+namespace spawnfield::cli {
+namespace {
+
+std::atomic<bool> interrupt_seen{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+
+void note_interrupt(int signal)
+{
+    interrupt_seen = true;
+    std::signal(signal, SIG_DFL);
+}
+
+void catch_interrupts()
+{
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        if (std::signal(signal, note_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup ignores SIGHUP
+}
+
+}  // namespace
+
+Terminal::Terminal() { catch_interrupts(); }
+
+void Terminal::notice(const std::string& text)
+{
+    hide_progress();
+    std::cerr << "notice: " << text << "\n";
+}
+
+void Terminal::complain(const std::string& message)
+{
+    hide_progress();
+    std::cerr << "spawnfield: " << message << "\n";
+}
+
+Progress Terminal::show_progress(const std::string& label)
+{
+    if (isatty(STDERR_FILENO) == 0) return {};
+    using Clock = std::chrono::steady_clock;
+    auto last = std::make_shared<Clock::time_point>(Clock::now());
+    return [this, label, last](double share) {
+        const auto now = Clock::now();
+        if (now - *last < std::chrono::milliseconds(100)) return;
+        *last = now;
+        const int width = 30, full = int(share * width);
+        std::fprintf(stderr, "\r%s [%s%s] %3d %%", label.c_str(), std::string(full, '#').c_str(),
+                     std::string(width - full, ' ').c_str(), int(share * 100));
+        is_bar_shown_ = true;
+    };
+}
+
+void Terminal::hide_progress()
+{
+    if (is_bar_shown_) std::fprintf(stderr, "\r%70s\r", "");
+    is_bar_shown_ = false;
+}
+
+bool Terminal::is_interrupted() const { return interrupt_seen; }
+
+void Terminal::forget_interruption()
+{
+    interrupt_seen = false;
+    catch_interrupts();
+}
+
+void Terminal::write(std::string_view text) { std::cout << text; }
+
+void Terminal::flush()
+{
+    std::cout.flush();
+    if (!std::cout) throw OutputError("standard output", "cannot be written");
+}
+
+void Terminal::summarize(const std::string& line, const std::string&, bool is_quiet)
+{
+    hide_progress();
+    if (!is_quiet) std::cerr << line << "\n";
+}
+
+}  // namespace spawnfield::cli
