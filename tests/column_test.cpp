@@ -1,6 +1,7 @@
 #include "catch.h"
 #include "column/columns.h"
 #include "hard_scene.h"
+#include "query/draw.h"
 #include "test_map.h"
 #include "worlds/hand_scene.h"
 
@@ -53,7 +54,40 @@ int different_columns(const Scene& scene, int cols)
     return out;
 }
 
+/// The same for random places, row by row, with corners of triangles among them.
+int different_columns_at_places(const Scene& scene, std::uint64_t seed)
+{
+    const Geometry geometry(scene);
+    const Bounds bounds = scene.bounds();
+    Draw draw(seed, 0);
+    std::vector<Vec2> places;
+    for (int row = 0; row < 20; ++row) {
+        const double y = draw.uniform(bounds.min.y(), bounds.max.y());
+        for (int k = 0; k < 40; ++k)
+            places.emplace_back(draw.uniform(bounds.min.x() - 0.1, bounds.max.x()), y + draw.uniform(0, 0.1));
+    }
+    for (const Vec3& vertex : scene.vertices)
+        if (draw.unit() < 0.1) places.push_back(vertex.head<2>());
+    Columns columns;
+    columns.set(geometry, std::span<const Vec2>());
+    columns.set(geometry, places);
+    int out = 0;
+    for (std::size_t k = 0; k < places.size(); ++k)
+        out += !is_same(columns.at(int(k), 0), column_at(geometry, places[k].x(), places[k].y()));
+    return out;
+}
+
 }  // namespace
+
+TEST_CASE("the columns at a list of places are those that are computed one by one")
+{
+    int different = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        different += different_columns_at_places(random_scene(seed), seed);
+        different += different_columns_at_places(hard_case(seed).scene, seed);
+    }
+    CHECK(different == 0);
+}
 
 TEST_CASE("the columns of a block are those that are computed one by one")
 {

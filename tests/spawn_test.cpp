@@ -423,7 +423,7 @@ TEST_CASE("a stop loses less than a block of draws that were judged")
     const TestMap map = training_map();
     const Judge judge(map, husky());
     for (const Stance stance : {Stance::Level, Stance::Settled}) {
-        const double block = stance == Stance::Settled ? 2048 : 65536;
+        const double block = stance == Stance::Settled ? 2048 : 262144;
         for (const int threads : {1, 4}) {
             SampleOptions options{.count = 1000000, .stance = stance, .threads = threads};
             std::atomic<bool> is_time{false};
@@ -433,12 +433,12 @@ TEST_CASE("a stop loses less than a block of draws that were judged")
                 return true;
             })
                                                              : ReachFilter();
-            std::atomic<long> chunks{stance == Stance::Settled ? 1000000 : 2500};
+            std::atomic<long> chunks{stance == Stance::Settled ? 1000000 : 9000};
             options.stop = [&] { return chunks.fetch_sub(1) <= 0 || is_time; };
             const SpawnList part = sample(judge, options);
             REQUIRE(part.is_stopped);
             // A chunk of 64 draws is judged whenever `stop` has returned false. It is also asked between batches.
-            const double draws = stance == Stance::Settled ? double(judged) : 64 * 2480.0;
+            const double draws = stance == Stance::Settled ? double(judged) : 64 * 8980.0;
             CHECK(double(part.draws) > draws - block - 64 * threads);
         }
     }

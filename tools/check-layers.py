@@ -25,6 +25,7 @@ OWNERS = {  # public headers that have no .cpp file of the same name
     "reach": "reach",
     "settled_pose": "settle",
     "simulators": "simulators",
+    "spawn_file": "poses",
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"/]+)/[^"]+"|<spawnfield/(\w+)\.h>)', re.MULTILINE)
 

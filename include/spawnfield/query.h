@@ -169,7 +169,7 @@ struct SpawnList {
     /// double_ground above it, likely the same ground twice.
     std::uint64_t on_double_ground = 0;
     /// There are fewer than `count` spawns because the options' `stop` returned true. They are the first ones of the
-    /// whole list; a stop loses fewer than 2,048 draws of settled robots that were judged, or 65,536 of level ones.
+    /// whole list; a stop loses fewer than 2,048 draws of settled robots that were judged, or 262,144 of level ones.
     bool is_stopped = false;
     /// Only set by sample(): there are fewer than `count` spawns, and it is proven that no other spawn fits. With place
     /// rules, this is proven only if no place can comply with them.

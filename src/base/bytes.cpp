@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 
 namespace spawnfield {
@@ -34,6 +35,14 @@ bool Bytes::copy(std::size_t offset, std::size_t size, char* to) const
         to += count;
     }
     return true;
+}
+
+void Bytes::forget_pages() const
+{
+    if (descriptor < 0) return;
+    const auto page = std::size_t(sysconf(_SC_PAGESIZE));
+    const std::size_t before = reinterpret_cast<std::uintptr_t>(view.data()) % page;  // bytes of the first page
+    madvise(const_cast<char*>(view.data() - before), view.size() + before, MADV_DONTNEED);
 }
 
 Bytes map_file(const std::filesystem::path& file)

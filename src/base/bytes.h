@@ -25,6 +25,10 @@ struct Bytes {
     /// Copies `size` bytes from `offset` on. Those of a file are read, so that no page of the mapping is used. Returns
     /// false if the file cannot be read or has become shorter.
     bool copy(std::size_t offset, std::size_t size, char* to) const;
+
+    /// Returns the memory of a file's pages to the system, which maps them again when they are used. Other threads may
+    /// read the bytes at the same time.
+    void forget_pages() const;
 };
 
 /// Takes the string over.

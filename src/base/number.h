@@ -7,12 +7,17 @@
 
 namespace spawnfield {
 
-/// Appends the shortest text that reads back to the same double.
+inline constexpr std::size_t number_room = 32;  // characters; a number has at most 24
+
+/// Writes the shortest text that reads back to the same double. `to` has room for number_room characters. Returns the
+/// end of the text.
+inline char* write_number(char* to, double value) { return std::to_chars(to, to + number_room, value).ptr; }
+
+/// Appends the same text.
 inline void append_number(std::string& text, double value)
 {
-    char buffer[32];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-    text.append(buffer, end);
+    char buffer[number_room];
+    text.append(buffer, write_number(buffer, value));
 }
 
 /// Returns the shortest text that reads back to the same double.

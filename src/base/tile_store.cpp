@@ -11,7 +11,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr std::size_t large_file = 64 << 20, page = 4096;  // bytes
+constexpr std::size_t large_file = 64 << 20, page = 4096, most_in_place = 2 << 20;  // bytes
 
 }  // namespace
 
@@ -26,7 +26,8 @@ TileStore::TileStore(std::vector<TileLevel> levels, Bytes bytes, std::string fil
 {
     if (file_.empty()) return;
     opened_ = std::make_unique<Opened>();
-    opened_->bytes_to_copy = bytes_.view.size() > large_file ? bytes_.view.size() / 4 : 0;
+    opened_->forgets_pages = bytes_.view.size() > large_file;
+    opened_->bytes_to_copy = opened_->forgets_pages ? bytes_.view.size() / 4 : 0;
     for (const TileLevel& level : levels_)
         opened_->tiles.push_back(std::make_unique<std::atomic<const char*>[]>(level.tiles.size()));
 }
@@ -59,12 +60,24 @@ std::string_view TileStore::copy_of(const TileEntry& entry) const
     return {copy, entry.size};
 }
 
+/// Returns pages to the system if enough tiles of a large file were opened in the mapping. Then the memory of a query
+/// does not grow with the file. Pages that are still in use are mapped again, without reading the disk.
+void TileStore::count_in_place(std::size_t size) const
+{
+    if (!opened_->forgets_pages || (opened_->bytes_in_place += size) < most_in_place) return;
+    opened_->bytes_in_place = 0;
+    bytes_.forget_pages();
+}
+
 /// Reads a tile and checks its checksum.
 std::string_view TileStore::fetch(std::size_t level, std::size_t tile) const
 {
     const TileEntry& entry = levels_[level].tiles[tile];
     std::string_view out = copy_of(entry);
-    if (out.empty()) out = bytes_.view.substr(entry.offset, entry.size);
+    if (out.empty()) {
+        count_in_place(entry.size);
+        out = bytes_.view.substr(entry.offset, entry.size);
+    }
     if (XXH64(out.data(), out.size(), 0) != entry.checksum)
         throw FileError(file_, "is damaged (tile " + std::to_string(tile) + " of level " + std::to_string(level) +
                                    " has another checksum than the head of the file lists); bake the map again");

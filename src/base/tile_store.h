@@ -38,7 +38,8 @@ struct TileLevel {
 ///
 /// A tile of a file is used in place, in the mapping, except the first small tiles of a large file: they are copied,
 /// until the copies take a quarter of the file's size. With a page, Linux maps up to 15 others around it, so a query of
-/// few small tiles, far apart, would use 30 times the memory of their bytes. A copy takes 1 microsecond more.
+/// few small tiles, far apart, would use 30 times the memory of their bytes. A copy takes 1 microsecond more. The pages
+/// of other tiles of a large file are returned to the system each time that 2 MB of tiles were opened.
 class TileStore {
 public:
     TileStore() = default;
@@ -49,10 +50,12 @@ public:
     const std::vector<TileLevel>& levels() const { return levels_; }
     std::string_view bytes() const { return bytes_.view; }
 
-    /// From now on, no tile is copied: most of them will be needed.
+    /// From now on, no tile is copied, and all pages are kept: most of them will be needed.
     void expect_all() const
     {
-        if (opened_) opened_->bytes_to_copy = 0;
+        if (!opened_) return;
+        opened_->bytes_to_copy = 0;
+        opened_->forgets_pages = false;
     }
 
     /// Returns the bytes of a tile; none for an empty tile. They are valid as long as the store lives. The first call
@@ -80,15 +83,18 @@ private:
     struct Opened {
         std::vector<std::unique_ptr<std::atomic<const char*>[]>> tiles;  ///< of each level; nullptr: not opened yet
         std::atomic<std::size_t> bytes_to_copy;                          ///< limit of further copies
-        std::mutex mutex;                                                ///< for what follows
-        std::vector<Block> copies;                                       ///< tiles, one after the other
-        std::size_t room = 0;                                            ///< bytes that are left in the last block
+        std::atomic<bool> forgets_pages{false};
+        std::atomic<std::size_t> bytes_in_place{0};  ///< opened since pages were returned
+        std::mutex mutex;                            ///< for what follows
+        std::vector<Block> copies;                   ///< tiles, one after the other
+        std::size_t room = 0;                        ///< bytes that are left in the last block
 
         char* room_for(std::size_t size);
     };
 
     std::string_view fetch(std::size_t level, std::size_t tile) const;
     std::string_view copy_of(const TileEntry& entry) const;
+    void count_in_place(std::size_t size) const;
     std::string_view keep(std::size_t level, std::size_t tile, std::string_view bytes) const;
 
     std::vector<TileLevel> levels_;

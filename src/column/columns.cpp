@@ -1,5 +1,6 @@
 #include "column/columns.h"
 
+#include "base/rect.h"
 #include "column/column_builder.h"
 
 #include <algorithm>
@@ -41,19 +42,58 @@ private:
     const double shift_;
 };
 
+/// Returns the side of a square that has as many elements as a tile, if they are spread evenly, m.
+double tile_side(const Geometry& geometry)
+{
+    const Bounds& box = geometry.bounds();
+    const double area = (box.max.x() - box.min.x()) * (box.max.y() - box.min.y());
+    return area > 0 ? std::sqrt(area * TileBoxes::most / double(geometry.element_count())) : 0;
+}
+
+/// Returns the rectangle around the places; there must be one.
+Rect rect_around(std::span<const Vec2> places)
+{
+    Rect out{places[0].x(), places[0].y(), places[0].x(), places[0].y()};
+    for (const Vec2& place : places.subspan(1))
+        out = {std::min(out.low_x, place.x()), std::min(out.low_y, place.y()), std::max(out.high_x, place.x()),
+               std::max(out.high_y, place.y())};
+    return out;
+}
+
+/// Returns the end of the places from `begin` on that are in a rectangle with sides of at most `widest`, m. They are
+/// not many, because each of them is compared with each tile that meets the rectangle.
+std::size_t end_of_group(std::span<const Vec2> places, std::size_t begin, double widest)
+{
+    constexpr std::size_t most = 16;
+    Vec2 low = places[begin], high = low;
+    std::size_t end = begin + 1;
+    for (; end < std::min(places.size(), begin + most); ++end) {
+        low = low.cwiseMin(places[end]);
+        high = high.cwiseMax(places[end]);
+        if (!((high - low).maxCoeff() <= widest)) break;
+    }
+    return end;
+}
+
 }  // namespace
 
 Columns::Columns(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces) { set(geometry, grid, surfaces); }
 
-void Columns::set(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
+/// Makes empty columns.
+void Columns::start(int cols, int rows)
 {
-    cols_ = grid.cols;
-    slots_.assign(std::size_t(grid.cols) * std::size_t(grid.rows), {});
+    cols_ = cols;
+    slots_.assign(std::size_t(cols) * std::size_t(rows), {});
     starts_.assign(1, {});
     column_.spans.clear();
     column_.layers.clear();
     column_.water.clear();
     listed_.clear();
+}
+
+void Columns::set(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
+{
+    start(grid.cols, grid.rows);
     if (slots_.empty()) return;
     const double elements = geometry.impl().elements_near(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
                                                           grid.x_of(grid.first_col + grid.cols),
@@ -63,6 +103,27 @@ void Columns::set(const Geometry& geometry, const ColumnGrid& grid, Surfaces sur
         look_up(geometry, grid, surfaces);
     else
         scan(geometry, grid, surfaces);
+}
+
+/// Finds the tiles of several places at once.
+void Columns::set(const Geometry& geometry, std::span<const Vec2> places)
+{
+    start(int(places.size()), 1);
+    const double widest = 2 * tile_side(geometry);
+    for (std::size_t begin = 0; begin < places.size();) {
+        const std::size_t end = end_of_group(places, begin, widest);
+        const Rect around = rect_around(places.subspan(begin, end - begin));
+        geometry.impl().visit_tiles(
+            around.low_x, around.low_y, around.high_x, around.high_y, [&](const Tile& tile, const ElementBox& box) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    const double x = places[i].x(), y = places[i].y();
+                    if (x >= box.min[0] && x <= box.max[0] && y >= box.min[1] && y <= box.max[1])
+                        add_column(tile, tile.near(x, y, x, y), Surfaces::All, x, y, slots_[i]);
+                }
+            });
+        begin = end;
+    }
+    complete_all();
 }
 
 void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
@@ -106,6 +167,12 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
             if (index.find(seen.low_corner(), seen.high_corner(), range)) add_triangle(seen, range);
         });
     });
+    complete_all();
+}
+
+/// Completes the columns that have more than a slot can hold.
+void Columns::complete_all()
+{
     if (listed_.empty()) return;
     for (Slot& slot : slots_)
         if (slot.has_more) complete(slot);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/polygon2.h"
 #include "column/column_builder.h"
 #include "column/surface_hit.h"
 
@@ -74,7 +75,8 @@ struct ColumnRange {
     int first_col, last_col, first_row, last_row;
 };
 
-/// The columns of a block of a grid. They are identical to those that column_at returns one by one.
+/// The columns of a block of a grid, or at a list of places. They are identical to those that column_at returns one by
+/// one.
 ///
 /// If there are many more elements than columns, column after column is looked up in the geometry. Otherwise each
 /// element is visited once and added to all columns that it meets (scan conversion): O(elements + columns).
@@ -85,6 +87,10 @@ public:
 
     /// Computes the columns of another block in the same memory, which is faster than fresh memory for each block.
     void set(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces = Surfaces::All);
+
+    /// Computes the columns at these places (x, y), m, of which neighbours should follow each other. The column of
+    /// places[i] is at(i, 0).
+    void set(const Geometry& geometry, std::span<const Vec2> places);
 
     /// Returns the column in column grid.first_col + i and row grid.first_row + j of the grid.
     ColumnView at(int i, int j) const
@@ -135,6 +141,7 @@ private:
     };
     static constexpr std::uint32_t none = 0xffffffff;
 
+    void start(int cols, int rows);
     void look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void add_triangle(const SeenTriangle& seen, const ColumnRange& range);
@@ -146,6 +153,7 @@ private:
     void add_sheet(Slot& slot, const SurfaceHit& hit, double z);
     void add(Slot& slot, const SurfaceHit& hit);
     void list(Slot& slot, const SurfaceHit& hit);
+    void complete_all();
     void complete(Slot& slot);
     void end_column(Slot& slot);
     std::size_t number(int i, int j) const { return std::size_t(j) * std::size_t(cols_) + std::size_t(i); }

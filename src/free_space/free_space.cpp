@@ -185,6 +185,7 @@ void Mask::cover(const Part& part, Pass& pass) const
                 on_line(low.x() + std::clamp((line - v - low.y()) / rise, 0.0, 1.0) * (high.x() - low.x()), line);
         }
     };
+    if (part.core) return cover_rectangle(part, pass);
     const Polygon2& outer = part.footprint.outer.polygon;
     const int first = int(std::floor(v + part.reach.low_y / cell)),
               last = int(std::floor(v + part.reach.high_y / cell));
@@ -217,6 +218,25 @@ void Mask::cover(const Part& part, Pass& pass) const
             pass.rows[k].inner_low = std::max(lines[k][0], lines[k + 1][0]);
             pass.rows[k].inner_high = std::min(lines[k][1], lines[k + 1][1]);
         }
+    }
+    pass.is_ready = true;
+}
+
+/// Does the same for a part whose polygons are rectangles along the axes. All of its rows have the same range.
+void Mask::cover_rectangle(const Part& part, Pass& pass) const
+{
+    const double cell = raster_.levels()[pass.level].cell, v = (y_ - raster_.y0) / cell;
+    const Rect &reach = part.reach, &core = *part.core;
+    const int first = floor_of(v + reach.low_y / cell), last = floor_of(v + reach.high_y / cell),
+              first_line = ceil_of(v + core.low_y / cell), last_line = floor_of(v + core.high_y / cell);
+    const CoverRow rim{0, reach.low_x / cell, reach.high_x / cell, inf, -inf},
+        whole{0, rim.low, rim.high, core.low_x / cell, core.high_x / cell};
+    pass.rows.resize(std::size_t(last - first + 1));
+    pass.undecided.resize(pass.rows.size());
+    for (int row = first; row <= last; ++row) {
+        CoverRow& cells = pass.rows[std::size_t(row - first)];
+        cells = row >= first_line && row < last_line ? whole : rim;
+        cells.row = row;
     }
     pass.is_ready = true;
 }
@@ -359,6 +379,60 @@ void Mask::look_around(const Part& part, Pass& pass, std::span<const double> x, 
     }
 }
 
+/// Returns what look_around() finds for one pose. It looks at the cells of this pose only.
+Mask::Surroundings Mask::surroundings_of(const Part& part, Pass& pass, const Vec3& position) const
+{
+    constexpr int side = BoundsTile::side;
+    const double per_cell = 1 / raster_.levels()[pass.level].cell, x = position.x() - raster_.x0,
+                 y = position.y() - raster_.y0, bottom = position.z() + part.footprint.outer.bottom,
+                 top = position.z() + part.footprint.outer.top;
+    const Rect& reach = part.reach;
+    const CellRange cols{floor_of((x + reach.low_x) * per_cell), floor_of((x + reach.high_x) * per_cell)},
+        rows{floor_of((y + reach.low_y) * per_cell), floor_of((y + reach.high_y) * per_cell)};
+    if (rows.first < 0 || rows.last >= int(raster_.whole_rows(pass.level)) || cols.first < 0 ||
+        cols.last >= int(raster_.whole_cols(pass.level)))
+        return Surroundings::Plain;
+    for (int row = rows.first / side * side; row <= rows.last; row += side)
+        for (int col = cols.first / side * side; col <= cols.last; col += side) {
+            const OpenTile& open = tile_of(pass, std::uint32_t(col / side), std::uint32_t(row / side));
+            if (open.tile.is_empty()) continue;
+            const Surroundings found = surroundings_in(
+                open, {std::max(cols.first - col, 0), std::min(cols.last - col, side - 1)},
+                {std::max(rows.first - row, 0), std::min(rows.last - row, side - 1)}, bottom, top);
+            if (found != Surroundings::Clear) return found;
+        }
+    return Surroundings::Clear;
+}
+
+/// The same for these cells of one tile.
+Mask::Surroundings Mask::surroundings_in(const OpenTile& open, const CellRange& cols, const CellRange& rows,
+                                         double bottom, double top)
+{
+    const BoundsTile& tile = open.tile;
+    const auto visit_cells = [&](const auto& visit) {
+        for (int row = rows.first; row <= rows.last; ++row)
+            for (int col = cols.first; col <= cols.last; ++col)
+                visit(std::uint32_t(row) * BoundsTile::side + std::uint32_t(col));
+    };
+    std::uint16_t highest = 0;
+    visit_cells([&](std::uint32_t cell) { highest = std::max(highest, tile.tops[cell]); });
+    if (open.are_below(highest, bottom)) return Surroundings::Clear;
+    std::uint64_t listed = 0;
+    for (int row = rows.first; row <= rows.last; ++row) listed |= tile.bounds.marks_of(std::uint32_t(row));
+    if ((listed & bits_between(cols.first, cols.last)) == 0) return Surroundings::Plain;
+    std::uint16_t floor = 0, ceiling = std::numeric_limits<std::uint16_t>::max();
+    visit_cells([&](std::uint32_t cell) {
+        if (!tile.bounds.has(cell)) {
+            floor = std::max(floor, tile.tops[cell]);
+            return;
+        }
+        const std::span<const QuantizedSpan> spans = tile.bounds.of(cell);
+        floor = std::max(floor, spans[0].top);
+        if (spans.size() > 1) ceiling = std::min(ceiling, spans[1].bottom);
+    });
+    return tile.height(ceiling) > top && open.are_below(floor, bottom) ? Surroundings::Clear : Surroundings::Layered;
+}
+
 /// The heights of a part at a pose, in m and as quantized heights of the current tile.
 struct Mask::Heights {
     double bottom, top, inner_bottom, inner_top;  ///< of the outer and the inner prism, m
@@ -470,6 +544,10 @@ std::optional<Proof> Mask::proof_of_rectangle(const Part& part, Pass& pass, cons
             if (above == 0) continue;
             is_free = false;
             std::uint64_t listed = beyond & inside;
+            if (tile.bounds.marks == nullptr && tile.solids.marks == nullptr) {
+                is_decided = is_decided && (listed & above) == 0;
+                continue;
+            }
             for (int row = r.first; row <= r.last; ++row)
                 listed |= tile.bounds.marks_of(std::uint32_t(row)) | tile.solids.marks_of(std::uint32_t(row));
             is_decided = is_decided && (listed & above) == 0;
@@ -582,8 +660,16 @@ void Mask::prove(std::span<const double> x, double y, std::span<const double> z,
 
 Proof Mask::proof_of(const Vec3& position)
 {
-    Proof out;
-    prove({&position.x(), 1}, position.y(), {&position.z(), 1}, {&out, 1});
+    if (!is_in_reach(position.x(), position.y())) return Proof::Candidate;
+    Proof out = Proof::Free;
+    if (std::isnan(position.z())) return out;
+    for (Part& part : parts_) {
+        const Surroundings surroundings = surroundings_of(part, part.passes.front(), position);
+        if (surroundings == Surroundings::Clear) continue;
+        const Proof proof = proof_near(part, position, surroundings);
+        if (proof == Proof::Blocked) return proof;
+        if (proof != Proof::Free) out = proof;
+    }
     return out;
 }
 

@@ -104,11 +104,15 @@ private:
     void choose_passes(Part& part) const;
     void set_y(double y);
     void cover(const Part& part, Pass& pass) const;
+    void cover_rectangle(const Part& part, Pass& pass) const;
     OpenTile& tile_of(Pass& pass, std::uint32_t col, std::uint32_t row) const;
     OpenTile& rows_of(Pass& pass, int tile_col, int tile_row, const CellRange& rows) const;
     void open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, OpenTile& out) const;
     static CellRange open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u);
     bool is_in_reach(double x, double y) const;
+    Surroundings surroundings_of(const Part& part, Pass& pass, const Vec3& position) const;
+    static Surroundings surroundings_in(const OpenTile& open, const CellRange& cols, const CellRange& rows,
+                                        double bottom, double top);
     void look_around(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
                      std::span<Surroundings> out) const;
     static bool is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);

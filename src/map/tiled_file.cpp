@@ -103,6 +103,7 @@ TileStore open_tiled(const std::filesystem::path& file, const TiledFormat& forma
     } catch (const std::out_of_range&) {
         TileStore({}, tiles, file.string()).fail_inconsistent();
     }
+    bytes.forget_pages();  // the head of a large map has megabytes, and is not needed any more
     TileStore store(std::move(levels), tiles, file.string());
     if (!has_valid_levels(store)) store.fail_inconsistent();
     return store;

@@ -7,10 +7,12 @@
 
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>
+#include <spawnfield/spawn_file.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <limits>
@@ -198,12 +200,13 @@ void name_all(std::vector<RobotStart>& robots, const std::vector<std::string>& n
 
 void append_numbers(std::string& text, std::initializer_list<double> values)
 {
-    bool first = true;
+    std::array<char, 512> row;
+    char* end = row.data();
     for (const double value : values) {
-        if (!first) text += ',';
-        first = false;
-        append_number(text, value);
+        if (end != row.data()) *end++ = ',';
+        end = write_number(end, value);
     }
+    text.append(row.data(), end);
 }
 
 void append_if_known(std::string& text, double value)
@@ -341,6 +344,15 @@ std::string robots_csv(std::span<const RobotStart> robots)
 
 std::string spawns_csv(const SpawnList& list, std::span<const std::string> names)
 {
+    std::string text;
+    write_spawns_csv(list, names, [&](std::string_view piece) { text += piece; });
+    return text;
+}
+
+void write_spawns_csv(const SpawnList& list, std::span<const std::string> names,
+                      const std::function<void(std::string_view)>& sink)
+{
+    constexpr std::size_t piece = 1 << 16;  // characters; it stays in the cache
     check_rests("spawns_csv", list);
     const bool is_settled = list.stance == Stance::Settled;
     const std::string length_name = free_length_column(list.heading);
@@ -362,8 +374,11 @@ std::string spawns_csv(const SpawnList& list, std::span<const std::string> names
         if (!length_name.empty()) append_if_known(text, list.rests[i].free_length);
         for (const PlaceColumn& column : columns) append_if_known(text, column.values[i]);
         text += '\n';
+        if (text.size() < piece) continue;
+        sink(text);
+        text.clear();
     }
-    return text;
+    sink(text);
 }
 
 Json sample_settings_json(const SampleOptions& options, const Judge& judge)

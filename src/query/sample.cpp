@@ -174,15 +174,20 @@ private:
         const std::size_t before = out.spawns.size();
         std::uint64_t failures = 0, draws = 0;
         const auto batch_size = [&](std::uint64_t so_far) {
-            return std::size_t(std::min<std::uint64_t>(
+            const auto size = std::size_t(std::min<std::uint64_t>(
                 most - so_far, batch_for(options_.count, options_.min_distance, out.spawns.size(), out.draws)));
+            make_room(size, out.spawns);
+            return size;
         };
         const auto place = [&](std::uint64_t index) {
             Draw from(options_.seed, index);
             return point(from);
         };
-        const auto look_at = [&](std::uint64_t index, PoseJudge& judge) { return look(index, point, judge); };
-        next_ = draw_in_order(next_, shared_, options_, out, taken_, batch_size, place, look_at,
+        const auto look_at = [&](std::uint64_t index, PoseJudge& judge, const ColumnView* column) {
+            return look(index, point, judge, column);
+        };
+        const bool wants_columns = is_everywhere_ && !places_.has_limits();  // else many draws need none
+        next_ = draw_in_order(next_, shared_, options_, out, taken_, wants_columns, batch_size, place, look_at,
                               [&](const Candidate& candidate) {
                                   ++out.draws;
                                   ++draws;
@@ -196,6 +201,14 @@ private:
                               });
         taken_.settle();
         return out.spawns.size() - before;
+    }
+
+    /// Allocates memory for the spawns of a batch of draws at once, so that they are not copied again and again.
+    void make_room(std::size_t draws, std::vector<Spawn>& spawns) const
+    {
+        const auto at_most_all = [&](std::size_t size) { return std::min(size, options_.count); };
+        if (at_most_all(spawns.size() + draws) > spawns.capacity())
+            spawns.reserve(std::max(at_most_all(spawns.size() + draws), at_most_all(2 * spawns.capacity())));
     }
 
     /// Draws in the cells that are not proven full, and splits these cells again and again. Ends when all spawns are
@@ -264,7 +277,7 @@ private:
 
     /// Returns the layer in a slot, if there is one. The slots of a column contain, from the top, its layers that are
     /// ground, chosen by the options and in the area.
-    std::optional<ChosenLayer> layer_in(std::size_t slot, const Column& column, const Vec2& at)
+    std::optional<ChosenLayer> layer_in(std::size_t slot, const ColumnView& column, const Vec2& at)
     {
         std::optional<ChosenLayer> out;
         double above = std::numeric_limits<double>::infinity();  // height of the chosen layer above
@@ -273,7 +286,7 @@ private:
         const int count = int(heights.size());
         for (int layer = 0; layer < count; ++layer) {
             const double height = heights[std::size_t(layer)];
-            if (!options_.layers.includes(layer, count) || !area_.contains(at, height)) continue;
+            if (!options_.layers.includes(layer, count) || (!is_everywhere_ && !area_.contains(at, height))) continue;
             if (used++ == slot) out = ChosenLayer{height, above - height <= double_ground};
             above = height;
         }
@@ -282,18 +295,18 @@ private:
     }
 
     template <class Point>
-    Candidate look(std::uint64_t index, const Point& point, PoseJudge& judge)
+    Candidate look(std::uint64_t index, const Point& point, PoseJudge& judge, const ColumnView* known_column)
     {
         Draw from(options_.seed, index);
         const Vec2 at = point(from);
         const double slot = from.uniform(0, double(slots_));
         Candidate out;
         out.spawn.yaw = draw_yaw(options_, from);
-        out.off_area = !area_.contains(at);
+        out.off_area = !is_everywhere_ && !area_.contains(at);
         if (out.off_area) return out;
         out.off_rules = !places_.is_at_distances(at);
         if (out.off_rules) return out;
-        const Column& column = judge.column_at(at);
+        const ColumnView column = known_column != nullptr ? *known_column : ColumnView(judge.column_at(at));
         const std::optional<ChosenLayer> layer = layer_in(std::size_t(slot), column, at);
         if (!layer) return out;
         out.on_ground = true;
@@ -323,7 +336,7 @@ private:
     }
 
     /// Lets a candidate down at a place.
-    Candidate settle(const Column& column, const Vec3& place, Draw& from, Candidate out)
+    Candidate settle(const ColumnView& column, const Vec3& place, Draw& from, Candidate out)
     {
         let_down(stand_judges_.local(), column, place, shared_.options.stand.lift, options_, from, out);
         out.near_avoided = !avoided_.is_clear(out.spawn.position);
@@ -371,6 +384,7 @@ private:
     mutable PerThread<StandJudge> stand_judges_{[this] { return stand_judge(); }};  ///< only for settled poses
     const ZRange ground_z_;                                                         ///< layers beyond it are not ground
     const AreaIndex area_;
+    const bool is_everywhere_ = area_.is_everywhere();
     const Bounds box_;
     std::optional<PlaceCells> place_cells_;  ///< only with place rules
     const std::size_t slots_;

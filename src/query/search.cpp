@@ -124,11 +124,14 @@ public:
             Draw draw(options_.seed, index);
             return position(draw).head<2>();
         };
-        const auto look_at = [&](std::uint64_t index, PoseJudge& judge) { return look(index, judge); };
-        draw_in_order(0, shared_, options_, out, checked_, batch_size, place, look_at, [&](const Candidate& candidate) {
-            failures = take(candidate, out) ? 0 : failures + 1;
-            return out.spawns.size() < options_.count && failures < options_.max_failures;
-        });
+        const auto look_at = [&](std::uint64_t index, PoseJudge& judge, const ColumnView*) {
+            return look(index, judge);
+        };
+        draw_in_order(0, shared_, options_, out, checked_, false, batch_size, place, look_at,
+                      [&](const Candidate& candidate) {
+                          failures = take(candidate, out) ? 0 : failures + 1;
+                          return out.spawns.size() < options_.count && failures < options_.max_failures;
+                      });
         out.is_stopped = out.spawns.size() < options_.count && failures < options_.max_failures && is_stopped(options_);
         return out;
     }

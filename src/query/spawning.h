@@ -56,8 +56,8 @@ struct Candidate {
     bool not_preferred = false;  ///< only set by sample()
     bool near_avoided = false;
     bool clear = false;
-    std::uint64_t exact_checks = 0;
     Verdict verdict = Verdict::Outside;
+    std::uint32_t exact_checks = 0;
     Spawn spawn;
     SpawnRest rest;  ///< of a settled robot
 
@@ -71,14 +71,14 @@ struct Candidate {
 /// Lets the robot of a draw down at a place, at the spawn's yaw or at that of the options' rule. Sets the spawn, which
 /// stays at the place if the robot cannot be let down, and the verdict. `column` must be the column at the place.
 template <class Options>
-void let_down(StandJudge& judge, const Column& column, const Vec3& place, double lift, const Options& options,
+void let_down(StandJudge& judge, const ColumnView& column, const Vec3& place, double lift, const Options& options,
               Draw& draw, Candidate& out)
 {
     StandJudge::Choice choice;
     if (options.heading) {
-        choice = judge.judge(ColumnView(column), place, *options.heading, draw.unit());
+        choice = judge.judge(column, place, *options.heading, draw.unit());
     } else {
-        choice.pose = judge.judge(ColumnView(column), place, out.spawn.yaw);
+        choice.pose = judge.judge(column, place, out.spawn.yaw);
         choice.exact_checks = choice.pose.exact_check;
     }
     const SettledPose& pose = choice.pose;
@@ -86,7 +86,7 @@ void let_down(StandJudge& judge, const Column& column, const Vec3& place, double
     out.rest = {pose.tilt, pose.margin, choice.free_length};
     out.verdict = pose.verdict;
     out.off_rules = pose.off_rules;
-    out.exact_checks = choice.exact_checks;
+    out.exact_checks = std::uint32_t(choice.exact_checks);
 }
 
 /// Returns a list without spawns, with the options that say how its spawns are placed.
@@ -149,7 +149,7 @@ bool is_stopped(const Options& options)
 
 // Neighbours are judged one after the other within blocks of so many draws. In larger blocks, they are nearer to each
 // other; in smaller ones, less is lost when the work is stopped. A settled draw takes about as long as 30 level ones.
-inline constexpr std::size_t level_block = 1 << 16, settled_block = 1 << 11;
+inline constexpr std::size_t level_block = 1 << 18, settled_block = 1 << 11;
 
 /// Returns the indices of places block by block, each block in neighbourhoods.
 inline std::vector<std::uint32_t> in_blocks_of_neighbours(std::span<const Vec2> places, std::size_t block)
@@ -162,42 +162,76 @@ inline std::vector<std::uint32_t> in_blocks_of_neighbours(std::span<const Vec2> 
     return out;
 }
 
-/// Makes draws first, first + 1, … in batches. Several threads call look(index, judge), which returns a Candidate, for
-/// neighbours one after the other: place(index) returns x and y of a draw, m. Then take(candidate) is called for one
-/// draw after the other, in their order, until it returns false. batch_size(draws) returns the size of the next batch
-/// after so many draws; it changes nothing but the exact checks. Ends early if the options' `stop` returns true: then,
-/// fewer than a block of judged draws are not taken. Returns the number of the next draw.
+/// What one thread needs for the draws of a batch.
+struct DrawThread {
+    PoseJudge judge;
+    Columns columns;           ///< of a chunk of draws
+    std::vector<Vec2> places;  ///< of these draws
+
+    DrawThread(const Judge::Impl& shared, double yaw) : judge(shared, yaw) {}
+};
+
+/// Returns for each index its place in `order`.
+inline std::vector<std::uint32_t> inverse_of(std::span<const std::uint32_t> order)
+{
+    std::vector<std::uint32_t> out(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) out[order[k]] = std::uint32_t(k);
+    return out;
+}
+
+/// Makes draws first, first + 1, … in batches. Several threads call look(index, judge, column), which returns a
+/// Candidate, for neighbours one after the other: place(index) returns x and y of a draw, m. If `wants_columns`,
+/// `column` is the column there, which takes less time to find for several neighbours at once, else nullptr. Then
+/// take(candidate) is called for one draw after the other, in their order, until it returns false. batch_size(draws)
+/// returns the size of the next batch after so many draws; it changes nothing but the exact checks. Ends early if the
+/// options' `stop` returns true: then, fewer than a block of judged draws are not taken. Returns the number of the next
+/// draw.
 template <class Options, class BatchSize, class Place, class Look, class Take>
 std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, const Options& options,
-                            const SpawnList& found, TakenPoints& taken, const BatchSize& batch_size, const Place& place,
-                            const Look& look, const Take& take)
+                            const SpawnList& found, TakenPoints& taken, bool wants_columns, const BatchSize& batch_size,
+                            const Place& place, const Look& look, const Take& take)
 {
     constexpr std::size_t chunk = 64;
     const std::size_t block = options.stance == Stance::Settled ? settled_block : level_block;
     static_assert(settled_block % chunk == 0 && level_block % chunk == 0);
-    std::vector<Candidate> batch;
+    std::vector<Candidate> batch;  // neighbour by neighbour
     std::vector<Vec2> places;
     for (std::uint64_t next = first;;) {
         taken.settle();
-        batch.resize(batch_size(next - first));
-        places.resize(batch.size());
-        for (std::size_t i = 0; i < batch.size(); ++i) places[i] = place(next + i);
+        const std::size_t size = batch_size(next - first);
+        places.resize(size);
+        for (std::size_t i = 0; i < size; ++i) places[i] = place(next + i);
         const std::vector<std::uint32_t> order = in_blocks_of_neighbours(places, block);
+        batch.clear();
+        batch.resize(size);
         const Progress progress = share_found(options, found);
-        const bool is_sparse = shared.is_sparse(next + batch.size());
+        const bool is_sparse = shared.is_sparse(next + size);
         const auto stop = [&] { return is_stopped(options); };
-        const std::size_t chunks = (batch.size() + chunk - 1) / chunk;
+        PerThread<DrawThread> threads([&] { return DrawThread(shared, options.yaw); });
+        const std::size_t chunks = (size + chunk - 1) / chunk;
         const std::size_t done = parallel_until(chunks, options.threads, progress, stop, [&](std::size_t c) {
-            PoseJudge judge(shared, options.yaw);
-            if (is_sparse) judge.use_coarse_cells();
-            const std::size_t end = std::min(batch.size(), (c + 1) * chunk);
-            for (std::size_t k = c * chunk; k < end; ++k) batch[order[k]] = look(next + order[k], judge);
+            DrawThread& thread = threads.local();
+            if (is_sparse) thread.judge.use_coarse_cells();
+            const std::size_t begin = c * chunk;
+            const std::span<const std::uint32_t> draws = std::span(order).subspan(begin, std::min(size - begin, chunk));
+            if (wants_columns) {
+                thread.places.clear();
+                for (const std::uint32_t i : draws) thread.places.push_back(places[i]);
+                thread.columns.set(shared.map.geometry, thread.places);
+            }
+            for (std::size_t k = 0; k < draws.size(); ++k) {
+                const ColumnView column = wants_columns ? thread.columns.at(int(k), 0) : ColumnView();
+                batch[begin + k] = look(next + draws[k], thread.judge, wants_columns ? &column : nullptr);
+            }
         });
         const bool is_late = done < chunks;
-        if (is_late) batch.resize(done * chunk / block * block);  // only the whole blocks
-        for (const Candidate& candidate : batch) {
+        const std::size_t taken_draws = is_late ? done * chunk / block * block : size;  // only whole blocks
+        const std::vector<std::uint32_t> number = inverse_of(order);
+        for (std::size_t i = 0; i < taken_draws; ++i) {
+            constexpr std::size_t ahead = 16;  // the candidates of successive draws are far apart in memory
+            if (i + ahead < taken_draws) __builtin_prefetch(&batch[number[i + ahead]]);
             ++next;
-            if (!take(candidate)) return next;
+            if (!take(batch[number[i]])) return next;
         }
         if (is_late) return next;
     }

@@ -18,6 +18,7 @@
 #include "thesis_output.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/spawn_file.h>
 
 #include <cctype>
 #include <cstdio>
@@ -125,14 +126,15 @@ template <class Options>
 void write(const SpawnArgs& args, const SimulatorOutput& output, const Session& session, const Options& options,
            const SpawnList& list)
 {
-    std::vector<RobotStart> robots = robot_starts(list);
+    std::vector<RobotStart> robots;
     std::vector<std::string> names;
+    if (output.has_names() || args.format != "csv") robots = robot_starts(list);
     if (output.has_names()) {
         output.give_names(robots);
         for (const RobotStart& robot : robots) names.push_back(robot.name);
     }
     if (args.format == "csv")
-        return write_output(args, args.out, [&](const auto& sink) { sink(spawns_csv(list, names)); });
+        return write_output(args, args.out, [&](const auto& sink) { write_spawns_csv(list, names, sink); });
     output.write(robots, session.map, [&] { return spawns_json(robots, list, *session.judge, options); });
 }
 
