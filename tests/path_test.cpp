@@ -10,9 +10,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
+#include <tuple>
 
 using namespace spawnfield;
 using rest_robots::add_block;
@@ -388,6 +390,140 @@ TEST_CASE("In the open, paths have the length that searches take as their lower 
             CHECK(found >= length * (1 - 1e-12));
             CHECK(found <= length + 0.5);
         }
+}
+
+namespace {
+
+/// A floor of 8 x 8 m with posts at random, and a second floor 0.2 m above a part of it, on which the robot can drive.
+Scene random_posts(std::uint64_t seed)
+{
+    Scene scene;
+    add_block(scene, {-4, -4, -0.5}, {4, 4, 0});
+    if (seed % 2 == 1) add_block(scene, {2, -4, 1}, {4, -2, 1.2});
+    Random random(seed);
+    for (int k = 0; k < 6; ++k) {
+        const Vec2 at(random.between(-3, 3), random.between(-3, 3));
+        add_wall(scene, at, at + Vec2(random.between(0.05, 0.8), random.between(0.05, 0.8)));
+    }
+    return scene;
+}
+
+/// Returns the lowest cost, and with it the fewest turns, from a state to each state of a graph: Dijkstra's algorithm
+/// without estimates, for all ways of all states.
+std::vector<std::pair<PathCost, int>> plain_search(const PathGraph& graph, std::uint64_t start)
+{
+    using Cost = std::pair<PathCost, int>;
+    std::vector<Cost> out(graph.graph().ground.size() * lattice_headings, {std::numeric_limits<PathCost>::max(), 0});
+    std::set<std::pair<Cost, std::uint64_t>> queue{{{0, 0}, start}};
+    out[start] = {0, 0};
+    while (!queue.empty()) {
+        const auto [cost, state] = *queue.begin();
+        queue.erase(queue.begin());
+        graph.for_each_neighbour(state, PathGraph::all_directions, [&, known = cost](std::uint64_t next, PathCost way) {
+            const Cost sum{known.first + way, known.second + (way == 0 ? 1 : 0)};
+            if (sum >= out[next]) return;
+            queue.erase({out[next], next});
+            out[next] = sum;
+            queue.insert({sum, next});
+        });
+    }
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("The legs of groups are the ways of their states, also on level ground, where they are not stored")
+{
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        const Drive drive = seed == 2 ? Drive::Omni : Drive::Differential;
+        const PathWorld world(random_posts(seed), boxy({0.4, 0.3, 0.25}), {.drive = drive, .step = 0.2});
+        const PathGraph graph(world.graph.impl());
+        using Leg = std::tuple<PathGraph::Group, PathGraph::Group, PathCost>;
+        std::set<Leg> of_groups, of_states;
+        for (PathGraph::Group from = 0; from < graph.groups(); ++from)
+            graph.for_each_leg(from, [&](PathGraph::Group to, PathCost cost) { of_groups.insert({from, to, cost}); });
+        for (std::size_t place = 0; place < world.graph.impl()->ground.size(); ++place)
+            for (int heading = 0; heading < lattice_headings; ++heading) {
+                if (!has_heading(world.graph.impl()->valid[place], heading)) continue;
+                const std::uint64_t state = place * lattice_headings + std::uint64_t(heading);
+                graph.for_each_neighbour(state, PathGraph::all_directions, [&](std::uint64_t next, PathCost cost) {
+                    if (cost > 0) of_states.insert({graph.group_of(state), graph.group_of(next), cost});
+                });
+            }
+        CHECK(of_groups == of_states);
+        CHECK(of_groups.size() > 10000);
+    }
+}
+
+TEST_CASE("Searches that leave out legs and groups find the paths of a search that does not")
+{
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+        const Drive drive = seed == 2 ? Drive::Omni : Drive::Differential;
+        const PathWorld world(random_posts(seed), boxy({0.4, 0.3, 0.25}), {.drive = drive, .step = 0.2});
+        const auto graph = std::make_shared<const PathGraph>(world.graph.impl());
+        PathSearch::Impl search(graph);
+        Random random(seed);
+        const auto any_state = [&] {
+            for (;;) {
+                const auto place = std::size_t(random.between(0, double(world.graph.impl()->ground.size())));
+                const int heading = int(random.between(0, lattice_headings));
+                if (has_heading(world.graph.impl()->valid[place], heading))
+                    return std::uint64_t(place) * lattice_headings + std::uint64_t(heading);
+            }
+        };
+        for (int k = 0; k < 4; ++k) {
+            const std::uint64_t start = any_state();
+            const auto expected = plain_search(*graph, start);
+            for (int goal = 0; goal < 100; ++goal) {
+                const std::uint64_t end = any_state();
+                const auto found = search.find(start, end, 1e3);
+                CAPTURE(seed, start, end);
+                REQUIRE(found.has_value() == (expected[end].first != std::numeric_limits<PathCost>::max()));
+                if (!found) continue;
+                CHECK(*found == double(expected[end].first) * nanometre);
+                CHECK(graph->at_least(graph->group_of(start), graph->group_of(end)) <= expected[end].first);
+                CHECK(turns_of(search.states()) == expected[end].second);
+            }
+        }
+    }
+}
+
+TEST_CASE("A path that is one straight way is the one that shortening finds")
+{
+    const PathWorld world(random_posts(5), boxy({0.4, 0.3, 0.25}), {.step = 0.2});
+    const auto graph = std::make_shared<const PathGraph>(world.graph.impl());
+    PathSearch::Impl search(graph);
+    Random random(5);
+    int straight = 0, others = 0;
+    for (int k = 0; k < 80; ++k) {
+        const auto pose = [&] { return world.at(random.between(-4, 4), random.between(-4, 4), random.between(-3, 3)); };
+        const auto start = search.end_of(pose()), goal = search.end_of(pose());
+        if (!start || !goal || !search.find(*start, *goal, 1e3)) continue;
+        const ShortPath found = search.path(*start, *goal, true);
+        std::vector<Stop> stops{start->stop};
+        std::vector<double> lengths{start->length};
+        const std::vector<std::uint64_t> states = search.states();
+        for (std::size_t i = 0; i < states.size(); ++i) {
+            stops.push_back({graph->ground_of(states[i]), lattice_yaw(int(states[i] % lattice_headings))});
+            PathCost least = std::numeric_limits<PathCost>::max();
+            if (i + 1 < states.size())
+                graph->for_each_neighbour(states[i], PathGraph::all_directions, [&](std::uint64_t to, PathCost cost) {
+                    if (to == states[i + 1]) least = std::min(least, cost);
+                });
+            lengths.push_back(i + 1 < states.size() ? double(least) * nanometre : goal->length);
+        }
+        stops.push_back(goal->stop);
+        const ShortPath expected = shortened(*world.graph.impl(), stops, lengths);
+        CHECK(found.length == expected.length);
+        REQUIRE(found.stops.size() == expected.stops.size());
+        for (std::size_t i = 0; i < found.stops.size(); ++i) {
+            CHECK(found.stops[i].ground == expected.stops[i].ground);
+            CHECK(found.stops[i].yaw == expected.stops[i].yaw);
+        }
+        ++(StraightWays(*world.graph.impl()).find(start->stop, goal->stop) ? straight : others);
+    }
+    CHECK(straight > 5);
+    CHECK(others > 5);
 }
 
 TEST_CASE("In a maze, a path is at most 1 % longer than the shortest one")

@@ -256,7 +256,8 @@ double half_of_world(const Robot& robot)
     return 2 * std::max(size.x(), size.y());
 }
 
-/// Counts the states of a map that LevelGround proves, and checks them with Judge::settle.
+/// Counts the states of a map that LevelGround proves, and checks them with Judge::settle. Also checks poses at other
+/// headings on the same places.
 std::size_t check_proven(const TestMap& map, const Robot& robot, double step, const JudgeOptions& limits = {})
 {
     const Judge judge(map, robot, limits);
@@ -270,18 +271,30 @@ std::size_t check_proven(const TestMap& map, const Robot& robot, double step, co
             places.clear();
             details.clear();
             ways.find_places({x, y}, places, details);
-            for (const PlaceStates& place : places)
+            for (const PlaceStates& place : places) {
+                const Vec3 ground(x, y, place.ground);
+                const double yaw = std::remainder(x + 3 * y, std::numbers::pi);
+                const SettledPose aside = judge.settle(ground, yaw);
+                const auto standing = ways.stand(ground, yaw);
+                CAPTURE(robot.name, x, y, place.ground, yaw);
+                REQUIRE(standing.has_value() == (aside.verdict == Verdict::Valid));
+                if (standing) {
+                    CHECK(standing->ground.z() == aside.ground->height);
+                    CHECK(std::abs(standing->pose.z - aside.position.z()) <=
+                          (standing->pose.is_exact ? 0 : LevelGround::tolerance));
+                }
                 for (int k = 0; k < headings; ++k) {
                     if (!has_heading(place.valid, k)) continue;
                     const StatePose state = place.pose(k);
                     if (state.is_exact) continue;
                     ++proven;
-                    const SettledPose pose = judge.settle({x, y, place.ground}, lattice_yaw(k));
-                    CAPTURE(robot.name, x, y, place.ground, k, place.is_open);
+                    const SettledPose pose = judge.settle(ground, lattice_yaw(k));
+                    CAPTURE(k, place.is_open);
                     CHECK(to_string(pose.verdict) == to_string(Verdict::Valid));
                     CHECK(std::abs(pose.position.z() - state.z) <= LevelGround::tolerance);
                     CHECK(pose.tilt * robot.bounds().max.norm() <= LevelGround::tolerance);
                 }
+            }
         }
     return proven;
 }

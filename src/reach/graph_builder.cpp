@@ -246,10 +246,10 @@ std::optional<GraphBuilder::PlaceAt> GraphBuilder::end_of_car_curve(WayJudge& ju
         return pass.is_open && has_heading(others[0].valid, end.heading) ? std::optional(PlaceAt{col, row, 0})
                                                                          : std::nullopt;
     if (pass.is_open) return std::nullopt;
-    const std::vector<SettledPose> stops = judge.follow(start, state_at({col, row, 0}, end.heading), pass.way,
+    const std::vector<RobotAtRest> stops = judge.follow(start, state_at({col, row, 0}, end.heading), pass.way,
                                                         judge.pieces_of_curve(pass.way, heading));
     for (std::size_t k = 0; k < others.size() && !stops.empty(); ++k)
-        if (others[k].ground == stops.back().ground->height) return PlaceAt{col, row, k};
+        if (others[k].ground == stops.back().ground.z()) return PlaceAt{col, row, k};
     return std::nullopt;
 }
 

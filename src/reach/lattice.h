@@ -18,6 +18,7 @@ struct LatticeMove {
 
     double length() const { return std::hypot(double(cols), double(rows)); }  ///< in steps of the grid
     constexpr LatticeMove operator+(const LatticeMove& other) const { return {cols + other.cols, rows + other.rows}; }
+    constexpr bool operator==(const LatticeMove&) const = default;
     constexpr LatticeMove operator*(int times) const { return {times * cols, times * rows}; }
 };
 
@@ -72,7 +73,7 @@ enum class Way : std::uint8_t {
 inline constexpr std::size_t way_count = 5;
 
 inline constexpr std::array all_ways{Way::Ahead, Way::Left, Way::Right, Way::Aside, Way::Turn};
-inline bool is_curve(Way way) { return way == Way::Left || way == Way::Right; }
+constexpr bool is_curve(Way way) { return way == Way::Left || way == Way::Right; }
 
 /// Where a way leads.
 struct WayEnd {

@@ -5,8 +5,6 @@
 #include <deque>
 #include <limits>
 #include <numeric>
-#include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 namespace spawnfield {
@@ -24,93 +22,134 @@ int heading_of(PathGraph::StateId state) { return int(state % lattice_headings);
 }  // namespace
 
 PathSearch::Impl::Impl(std::shared_ptr<const PathGraph> graph)
-    : graph_(std::move(graph)), labels_(graph_->groups(), Label{0, 0})
+    : graph_(std::move(graph)), labels_(graph_->groups(), Label{0, 0, unnumbered})
 {
+}
+
+/// Removes the next entry of the search, and returns it if its estimate is at most `most`.
+std::optional<PathSearch::Impl::Entry> PathSearch::Impl::pop(PathCost most)
+{
+    if (ready_.empty()) {
+        if (queue_.empty() || queue_.top().estimate > most) return std::nullopt;
+        ready_.push_back(queue_.top());
+        least_ = queue_.top().estimate;
+        queue_.pop();
+    }
+    const Entry out = ready_.back();
+    ready_.pop_back();
+    return out;
 }
 
 /// Goes on with the search, until all groups whose estimate is at most `most` have been visited, or `until` is found.
 /// Returns whether it is.
 bool PathSearch::Impl::expand(PathCost most, Group until)
 {
-    const Group goal = graph_->group_of(goal_);
-    while (!queue_.empty() && queue_.top().estimate <= most) {
-        const Entry entry = queue_.top();
-        queue_.pop();
-        if (entry.cost > labels_[entry.group].cost) continue;  // there is a shorter path to it
-        if (entry.group == until) return true;
-        graph_->for_each_leg(entry.group, [&](Group next, PathCost cost) {
-            const PathCost sum = entry.cost + cost;
+    while (const auto entry = pop(most)) {
+        if (entry->cost > labels_[entry->group].cost) continue;  // there is a shorter path to it
+        if (entry->group == until) return true;
+        graph_->for_each_useful_leg(entry->group, entry->leg, [&](Group next, PathCost cost, std::uint8_t leg) {
+            const PathCost sum = entry->cost + cost;
             if (is_reached(next) && sum >= labels_[next].cost) return;
-            labels_[next] = {sum, search_};
-            queue_.push({sum + graph_->at_least(next, goal), sum, next});
+            put(next, sum, leg);
         });
     }
     return false;
+}
+
+/// Begins a search at the start.
+void PathSearch::Impl::start_search()
+{
+    queue_ = {};
+    ready_.clear();
+    least_ = 0;
+    goal_group_ = graph_->group_of(goal_);
+    if (++search_ == 0) {  // the numbers begin anew
+        std::fill(labels_.begin(), labels_.end(), Label{0, 0, unnumbered});
+        search_ = 1;
+    }
+    put(graph_->group_of(start_), 0, PathGraph::unknown_leg);
+    has_searched_ = true;
+}
+
+void PathSearch::Impl::put(Group group, PathCost cost, std::uint8_t leg)
+{
+    labels_[group] = {cost, search_, unnumbered};
+    const Entry entry{cost + graph_->at_least(group, goal_group_), cost, group, leg};
+    if (entry.estimate <= least_)
+        ready_.push_back(entry);
+    else
+        queue_.push(entry);
 }
 
 std::optional<double> PathSearch::Impl::find(StateId start, StateId goal, double longest)
 {
     start_ = start;
     goal_ = goal;
-    queue_ = {};
-    if (++search_ == 0) {  // the numbers begin anew
-        std::fill(labels_.begin(), labels_.end(), Label{0, 0});
-        search_ = 1;
+    has_searched_ = false;
+    const Group last = graph_->group_of(goal);
+    if (const auto cost = graph_->cost_in_the_open(graph_->group_of(start), last)) {
+        cost_ = *cost;
+        if (cost_ > most_cost(longest)) return std::nullopt;
+    } else {
+        start_search();
+        if (!expand(most_cost(longest), last)) return std::nullopt;
+        cost_ = labels_[last].cost;
     }
-    const Group first = graph_->group_of(start), last = graph_->group_of(goal);
-    labels_[first] = {0, search_};
-    queue_.push({graph_->at_least(first, last), 0, first});
-    if (!expand(most_cost(longest), last)) return std::nullopt;
-    return double(labels_[last].cost) * nanometre;
+    return double(cost_) * nanometre;
 }
 
-/// Returns all groups that are on a shortest path to the goal.
-std::vector<PathSearch::Impl::Group> PathSearch::Impl::groups_on_shortest_paths()
+/// Finds all groups that are on a shortest path to the goal.
+void PathSearch::Impl::find_path_groups()
 {
-    const Group goal = graph_->group_of(goal_);
-    constexpr Group none = std::numeric_limits<Group>::max();
-    expand(labels_[goal].cost, none);  // visits those that have not been needed to find the goal
-    std::vector<Group> out{goal};
-    std::unordered_set<Group> known{goal};
-    for (std::size_t k = 0; k < out.size(); ++k)
-        graph_->for_each_leg(out[k], [&, to = out[k]](Group from, PathCost cost) {
-            if (is_on_way(from, to, cost) && known.insert(from).second) out.push_back(from);
+    if (!has_searched_) start_search();
+    expand(cost_, unnumbered);  // visits those that have not been needed to find the goal
+    path_groups_.clear();
+    const auto number = [&](Group group) {
+        labels_[group].number = std::uint32_t(path_groups_.size());
+        path_groups_.push_back({group});
+    };
+    number(graph_->group_of(goal_));
+    for (std::size_t k = 0; k < path_groups_.size(); ++k)
+        graph_->for_each_leg(path_groups_[k].group, [&, to = path_groups_[k].group](Group from, PathCost cost) {
+            if (!is_on_way(from, to, cost)) return;
+            path_groups_[k].back |= graph_->direction_of_leg(to, from);
+            if (labels_[from].number == unnumbered) number(from);
         });
-    return out;
 }
 
 std::vector<PathSearch::Impl::StateId> PathSearch::Impl::states()
 {
-    const std::vector<Group> groups = groups_on_shortest_paths();
-    const std::unordered_set<Group> is_on_path(groups.begin(), groups.end());
+    find_path_groups();
     // Here, ways between these groups that belong to shortest paths cost nothing, and turns on the spot cost 1.
-    struct Known {
-        int turns;
-        StateId parent;
+    reached_.assign(path_groups_.size() * lattice_headings, Reached{});
+    const auto reached = [&](Group group, StateId state) -> Reached& {
+        return reached_[std::size_t(labels_[group].number) * lattice_headings + state % lattice_headings];
     };
-    std::unordered_map<StateId, Known> known{{goal_, {0, goal_}}};
+    reached(graph_->group_of(goal_), goal_) = {0, goal_};
     std::deque<std::pair<int, StateId>> queue{{0, goal_}};  // from the goal to the start
     while (!queue.empty()) {
         const auto [turns, state] = queue.front();
         queue.pop_front();
         if (state == start_) break;
-        if (turns > known.at(state).turns) continue;
-        for (const auto& [other, cost] : graph_->neighbours(state)) {
-            const Group from = graph_->group_of(other);
+        const Group to = graph_->group_of(state);
+        if (turns > reached(to, state).turns) continue;
+        const auto visit = [&, known = turns, next = state](StateId other, PathCost cost) {
             const bool is_turn = cost == 0;
-            if (!is_turn && !(is_on_path.contains(from) && is_on_way(from, graph_->group_of(state), cost))) continue;
-            const int sum = turns + is_turn;
-            const auto [there, is_new] = known.try_emplace(other, Known{sum, state});
-            if (!is_new && sum >= there->second.turns) continue;
-            there->second = {sum, state};
+            const Group from = is_turn ? to : graph_->group_of(other);
+            if (!is_turn && !(is_on_way(from, to, cost) && labels_[from].number != unnumbered)) return;
+            Reached& there = reached(from, other);
+            const int sum = known + (is_turn ? 1 : 0);
+            if (sum >= there.turns) return;
+            there = {sum, next};
             if (is_turn)
                 queue.emplace_back(sum, other);
             else
                 queue.emplace_front(sum, other);
-        }
+        };
+        graph_->for_each_neighbour(state, path_groups_[labels_[to].number].back, visit);
     }
     std::vector<StateId> out{start_};
-    while (out.back() != goal_) out.push_back(known.at(out.back()).parent);
+    while (out.back() != goal_) out.push_back(reached(graph_->group_of(out.back()), out.back()).next);
     return out;
 }
 
@@ -132,16 +171,17 @@ std::optional<double> PathSearch::Impl::find(const End& start, const End& goal, 
     if (start.island != goal.island) return std::nullopt;
     const auto found = find(start.state, goal.state, longest);
     if (!found) return std::nullopt;
-    const double length = *found + start.length + goal.length;
-    return length <= longest ? std::optional(length) : std::nullopt;
+    length_ = *found + start.length + goal.length;
+    return length_ <= longest ? std::optional(length_) : std::nullopt;
 }
 
 /// Returns the cost of the cheapest way between two neighbours.
 PathCost PathSearch::Impl::cost_between(StateId from, StateId to) const
 {
     PathCost out = std::numeric_limits<PathCost>::max();
-    for (const auto& [state, cost] : graph_->neighbours(from))
+    graph_->for_each_neighbour(from, PathGraph::all_directions, [&](StateId state, PathCost cost) {
         if (state == to) out = std::min(out, cost);
+    });
     return out;
 }
 
@@ -158,18 +198,31 @@ std::vector<Stop> PathSearch::Impl::stops_on_curve(StateId from, StateId to) con
     const PlaceStates begin{.ground = graph_->ground_of(from).z()}, end{.ground = graph_->ground_of(to).z()};
     const Way turn = heading_of(to) == lattice_heading(heading_of(from), 1) ? Way::Left : Way::Right;
     WayJudge& judge = graph_->graph().way_judges.local();
-    const std::vector<SettledPose> poses = judge.follow({graph_->ground_of(from).head<2>(), begin, heading_of(from)},
-                                                        {graph_->ground_of(to).head<2>(), end, heading_of(to)}, turn,
-                                                        judge.pieces_of_curve(turn, heading_of(from)));
+    const std::vector<RobotAtRest> standings = judge.follow(
+        {graph_->ground_of(from).head<2>(), begin, heading_of(from)},
+        {graph_->ground_of(to).head<2>(), end, heading_of(to)}, turn, judge.pieces_of_curve(turn, heading_of(from)));
     std::vector<Stop> out;
-    for (std::size_t k = 0; k + 1 < poses.size(); ++k)
-        out.push_back({{poses[k].position.x(), poses[k].position.y(), poses[k].ground->height}, poses[k].yaw});
+    for (std::size_t k = 0; k + 1 < standings.size(); ++k) out.push_back({standings[k].ground, standings[k].yaw});
     return out;
+}
+
+/// Returns the straight way from start to goal if that is what shortened() makes of the path that was found last.
+/// Returns nothing if that is not certain.
+std::optional<ShortPath> PathSearch::Impl::straight_path(const End& start, const End& goal) const
+{
+    constexpr double rounding = 1e-9;  // of the path's length, which shortened() adds up in another order
+    auto stops = StraightWays(graph_->graph()).find(start.stop, goal.stop);
+    if (!stops) return std::nullopt;
+    const double length = length_between(*stops);
+    if (!(length <= length_ * (1 - rounding))) return std::nullopt;
+    return ShortPath{std::move(*stops), length};
 }
 
 ShortPath PathSearch::Impl::path(const End& start, const End& goal, bool shorten)
 {
     const bool is_car = graph_->graph().options.drive == Drive::Car;
+    if (shorten && !is_car)  // mostly, states() takes longer
+        if (auto out = straight_path(start, goal)) return *std::move(out);
     std::vector<Stop> stops{start.stop};
     std::vector<double> lengths{start.length};
     const std::vector<StateId> found = states();

@@ -6,6 +6,7 @@
 #include <spawnfield/path.h>
 
 #include <functional>
+#include <limits>
 #include <queue>
 
 namespace spawnfield {
@@ -48,13 +49,16 @@ public:
 
 private:
     using Group = PathGraph::Group;
+    static constexpr std::uint32_t unnumbered = std::numeric_limits<std::uint32_t>::max();
     struct Label {
         PathCost cost;
         std::uint32_t search;  ///< number of the search that wrote this label
+        std::uint32_t number;  ///< in path_groups_, or unnumbered
     };
     struct Entry {
         PathCost estimate, cost;
         Group group;
+        std::uint8_t leg;  ///< with which it was reached, or unknown_leg
         /// Among entries with the same estimate, the one nearest to the goal comes first.
         bool operator>(const Entry& other) const
         {
@@ -68,15 +72,39 @@ private:
     {
         return is_reached(from) && labels_[from].cost + cost == labels_[to].cost;
     }
+    void start_search();
+    std::optional<Entry> pop(PathCost most);
+    void put(Group group, PathCost cost, std::uint8_t leg);
     PathCost cost_between(StateId from, StateId to) const;
     std::vector<Stop> stops_on_curve(StateId from, StateId to) const;
     bool expand(PathCost most, Group until);
-    std::vector<Group> groups_on_shortest_paths();
+    void find_path_groups();
+    std::optional<ShortPath> straight_path(const End& start, const End& goal) const;
 
     std::shared_ptr<const PathGraph> graph_;
     std::vector<Label> labels_;  ///< of each group
     std::uint32_t search_ = 0;   ///< number of the last search
     StateId start_ = 0, goal_ = 0;
+    Group goal_group_ = 0;
+    PathCost cost_ = 0;          ///< of the path that was found last
+    double length_ = 0;          ///< of the path between two poses that was found last, m
+    bool has_searched_ = false;  ///< whether labels_ are those of a search from start_ to goal_
+    /// A group on a shortest path from the start to the goal, and the directions from there to those before it.
+    struct PathGroup {
+        Group group;
+        PathGraph::Directions back = 0;
+    };
+    std::vector<PathGroup> path_groups_;
+    /// How a state is reached from the goal on a shortest path with the fewest turns.
+    struct Reached {
+        int turns = std::numeric_limits<int>::max();
+        StateId next = 0;  ///< towards the goal
+    };
+    std::vector<Reached> reached_;  ///< by number of the group and heading
+    /// Entries that come before queue_: their estimates are at most least_, that of the last entry from there. On open
+    /// ground, most entries are of this kind.
+    std::vector<Entry> ready_;
+    PathCost least_ = 0;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };
 

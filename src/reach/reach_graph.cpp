@@ -2,6 +2,7 @@
 
 #include "base/binary.h"
 #include "base/number.h"
+#include "base/parallel.h"
 #include "base/polygon2.h"
 #include "reach/graph_builder.h"
 #include "settle/convex.h"
@@ -9,6 +10,7 @@
 #include <spawnfield/error.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -158,20 +160,32 @@ bool ReachGraph::Impl::is_consistent() const
 /// Returns whether all ways lead to places.
 bool ReachGraph::Impl::are_ways_inside() const
 {
-    for (const Way way : moving_ways) {
-        const std::vector<Ways>& of_kind = ways[std::size_t(way)];
-        for (std::size_t column = 0; column + 1 < first.size() && !of_kind.empty(); ++column)
-            for (std::size_t place = first[column]; place < first[column + 1]; ++place)
-                for (int heading = 0; heading < lattice_headings; ++heading) {
-                    const std::uint8_t index = of_kind[place][std::size_t(heading)];
-                    if (index == nowhere) continue;
-                    const LatticeMove move = lattice.end(way, heading).move;
-                    const int col = int(column) % grid.cols + move.cols, row = int(column) / grid.cols + move.rows;
-                    if (col < 0 || row < 0 || col >= grid.cols || row >= grid.rows) return false;
-                    const std::size_t end = column_of(col, row);
-                    if (index >= first[end + 1] - first[end]) return false;
-                }
-    }
+    std::atomic<bool> out{true};
+    parallel_for(std::size_t(grid.rows), options.threads, {}, [&](std::size_t row) {
+        for (int col = 0; col < grid.cols; ++col)
+            if (!are_ways_inside(col, int(row))) out = false;
+    });
+    return out;
+}
+
+/// Returns whether all ways from the places of a column lead to places.
+bool ReachGraph::Impl::are_ways_inside(int col, int row) const
+{
+    const std::size_t column = column_of(col, row);
+    for (std::size_t place = first[column]; place < first[column + 1]; ++place)
+        for (const Way way : moving_ways) {
+            if (ways[std::size_t(way)].empty()) continue;
+            const Ways& of_place = ways[std::size_t(way)][place];
+            for (int heading = 0; heading < lattice_headings; ++heading) {
+                const std::uint8_t index = of_place[std::size_t(heading)];
+                if (index == nowhere) continue;
+                const LatticeMove move = lattice.end(way, heading).move;
+                const int end_col = col + move.cols, end_row = row + move.rows;
+                if (end_col < 0 || end_row < 0 || end_col >= grid.cols || end_row >= grid.rows) return false;
+                const std::size_t end = column_of(end_col, end_row);
+                if (index >= first[end + 1] - first[end]) return false;
+            }
+        }
     return true;
 }
 

@@ -108,6 +108,7 @@ private:
     void set_places();
     bool is_consistent() const;
     bool are_ways_inside() const;
+    bool are_ways_inside(int col, int row) const;
 };
 
 }  // namespace spawnfield

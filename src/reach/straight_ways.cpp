@@ -28,18 +28,18 @@ std::optional<double> StraightWays::open_ground(const Vec2& at, double ground) c
     return std::nullopt;
 }
 
-void StraightWays::add(const Vec3& ground, double yaw, std::optional<SettledPose> pose)
+void StraightWays::add(const Vec3& ground, double yaw, std::optional<RobotAtRest> standing)
 {
     way_.push_back({ground, yaw});
-    pose_ = std::move(pose);
+    standing_ = std::move(standing);
 }
 
-/// Returns the pose to which the robot can go.
-std::optional<SettledPose> StraightWays::go(const Vec2& to, double yaw)
+/// Returns where the robot stands if it can go there.
+std::optional<RobotAtRest> StraightWays::go(const Vec2& to, double yaw)
 {
     WayJudge& judge = graph_.way_judges.local();
-    if (!pose_) pose_ = judge.stand(way_.back().ground, way_.back().yaw);
-    return pose_->verdict == Verdict::Valid ? judge.go(*pose_, to, yaw) : std::nullopt;
+    if (!standing_) standing_ = judge.stand(way_.back().ground, way_.back().yaw);
+    return standing_ ? judge.go(*standing_, to, yaw) : std::nullopt;
 }
 
 /// Turns on the spot. Returns whether the robot can do so.
@@ -55,9 +55,9 @@ bool StraightWays::turn(double yaw)
             add(start.ground, next, std::nullopt);
             continue;
         }
-        auto pose = go(start.ground.head<2>(), next);
-        if (!pose || std::abs(pose->ground->height - start.ground.z()) > same_ground) return false;
-        add(start.ground, next, std::move(pose));
+        const auto standing = go(start.ground.head<2>(), next);
+        if (!standing || std::abs(standing->ground.z() - start.ground.z()) > same_ground) return false;
+        add(start.ground, next, standing);
     }
     return true;
 }
@@ -72,18 +72,17 @@ bool StraightWays::drive(const Vec2& to)
         add({to.x(), to.y(), *open}, from.yaw, std::nullopt);
         return true;
     }
-    auto pose = go(to, from.yaw);
+    const auto standing = go(to, from.yaw);
     is_open_ = false;
-    if (!pose) return false;
-    const double ground = pose->ground->height;
-    add({to.x(), to.y(), ground}, from.yaw, std::move(pose));
+    if (!standing) return false;
+    add(standing->ground, from.yaw, standing);
     return true;
 }
 
 std::optional<std::vector<Stop>> StraightWays::find(const Stop& from, const Stop& to, bool ends_anywhere)
 {
     way_ = {from};
-    pose_.reset();
+    standing_.reset();
     is_open_ = open_ground(from.ground.head<2>(), from.ground.z()).has_value();
     const Vec2 begin = from.ground.head<2>(), line = to.ground.head<2>() - begin;
     const double length = line.norm();

@@ -26,16 +26,16 @@ public:
     std::optional<std::vector<Stop>> find(const Stop& from, const Stop& to, bool ends_anywhere = false);
 
 private:
-    std::optional<SettledPose> go(const Vec2& to, double yaw);
+    std::optional<RobotAtRest> go(const Vec2& to, double yaw);
     bool turn(double yaw);
     bool drive(const Vec2& to);
     std::optional<double> open_ground(const Vec2& at, double ground) const;
-    void add(const Vec3& ground, double yaw, std::optional<SettledPose> pose);
+    void add(const Vec3& ground, double yaw, std::optional<RobotAtRest> standing);
 
     const ReachGraph::Impl& graph_;
-    std::vector<Stop> way_;            ///< up to where the robot is
-    std::optional<SettledPose> pose_;  ///< where it is; nothing: not known yet
-    bool is_open_ = false;             ///< whether all ways of a reach step from there are free
+    std::vector<Stop> way_;                ///< up to where the robot is
+    std::optional<RobotAtRest> standing_;  ///< how it stands there; nothing: not known yet
+    bool is_open_ = false;                 ///< whether all ways of a reach step from there are free
 };
 
 }  // namespace spawnfield

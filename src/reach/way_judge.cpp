@@ -273,24 +273,22 @@ bool WayJudge::passes_kink(const StateAt& from, const StateAt& to, const StatePo
     if (way != Way::Ahead && way != Way::Aside) return false;
     const auto [few, many] = pieces_between(course_of(from, to, way), pose, other, radius_);
     if (many == few) return false;
-    const std::vector<SettledPose> stops = follow(from, to, way, kink_pieces);
-    return !stops.empty() && stops.back().ground->height == to.place.ground;
+    const std::vector<RobotAtRest> stops = follow(from, to, way, kink_pieces);
+    return !stops.empty() && stops.back().ground.z() == to.place.ground;
 }
 
-std::vector<SettledPose> WayJudge::follow(const StateAt& from, const StateAt& to, Way way, int pieces)
+std::vector<RobotAtRest> WayJudge::follow(const StateAt& from, const StateAt& to, Way way, int pieces)
 {
     const Course course = course_of(from, to, way);
     set_start(from.at);
-    std::vector<SettledPose> out;
-    SettledPose pose = stand_.judge({from.at.x(), from.at.y(), from.place.ground}, course.yaw);
-    for (int k = 1; k <= pieces; ++k) {
+    std::vector<RobotAtRest> out;
+    auto standing = stand({from.at.x(), from.at.y(), from.place.ground}, course.yaw);
+    for (int k = 1; k <= pieces && standing; ++k) {
         const auto [at, yaw] = k < pieces ? course.at(double(k) / pieces) : std::pair(to.at, lattice_yaw(to.heading));
-        auto next = go_prepared(pose, at, yaw);
-        if (!next) return {};
-        pose = *std::move(next);
-        out.push_back(pose);
+        standing = go_prepared(*standing, at, yaw);
+        if (standing) out.push_back(*standing);
     }
-    return out;
+    return standing ? out : std::vector<RobotAtRest>();
 }
 
 /// Returns whether the robot meets nothing on a way between two poses, both of which are exact.
@@ -317,12 +315,12 @@ bool WayJudge::can_climb(const Course& course, const StatePose& pose, const Stat
     return can_rise(poses_.front()) && can_rise(poses_.back());
 }
 
-/// The same from a settled pose to a column, with the slopes in their directions.
-std::optional<std::size_t> WayJudge::lowest_step(const SettledPose& pose, const Vec2& to,
+/// The same from the ground below a settled pose to a column, with the slopes in their directions.
+std::optional<std::size_t> WayJudge::lowest_step(const Vec3& from_ground, const Vec2& to,
                                                  std::span<const PlaceStates> others, int heading)
 {
-    const Vec2 from = pose.position.head<2>();
-    const double ground = pose.ground->height, length = (to - from).norm();
+    const Vec2 from = from_ground.head<2>();
+    const double ground = from_ground.z(), length = (to - from).norm();
     const Vec2 ahead = (to - from) / length;  // not used if the length is 0
     return lowest_step(
         length, ground, others, heading, [&] { return slope_at(from, ground, ahead); },
@@ -332,9 +330,9 @@ std::optional<std::size_t> WayJudge::lowest_step(const SettledPose& pose, const 
 std::optional<std::size_t> WayJudge::place_near(const SettledPose& pose, const Vec2& to,
                                                 std::span<const PlaceStates> places, int heading)
 {
-    const auto k = lowest_step(pose, to, places, heading);
-    if (!k) return std::nullopt;
     const Vec2 from = pose.position.head<2>();
+    const auto k = lowest_step({from.x(), from.y(), pose.ground->height}, to, places, heading);
+    if (!k) return std::nullopt;
     const Course course{
         .begin = from, .end = to, .yaw = pose.yaw, .turn = turn_between(pose.yaw, lattice_yaw(heading))};
     set_start(from);
@@ -352,32 +350,64 @@ std::optional<double> WayJudge::ground_near(const Vec3& place, double most)
     return out;
 }
 
-std::optional<SettledPose> WayJudge::go(const SettledPose& pose, const Vec2& to, double yaw)
+std::optional<RobotAtRest> WayJudge::stand(const Vec3& ground, double yaw)
 {
-    set_start(pose.position.head<2>());
-    return go_prepared(pose, to, yaw);
+    return stand(ColumnView(columns_.column_at(ground.head<2>())), ground, yaw);
+}
+
+/// The same for the ground in a column. The robot is let down only if nothing is proven there.
+std::optional<RobotAtRest> WayJudge::stand(const ColumnView& column, const Vec3& ground, double yaw)
+{
+    if (level_.is_possible()) {
+        level_.set_place(ground.head<2>(), radius_ + step_);
+        if (level_.set_layer(ground.z()) && level_.stands(yaw) && is_proven(column, ground))
+            return RobotAtRest{ground, yaw, {.z = level_.z(), .is_exact = false}};
+    }
+    const SettledPose pose = stand_.judge(column, ground, yaw);
+    if (pose.verdict != Verdict::Valid) return std::nullopt;
+    return RobotAtRest{{ground.x(), ground.y(), pose.ground->height}, yaw, state_of(pose)};
+}
+
+std::optional<RobotAtRest> WayJudge::go(const RobotAtRest& from, const Vec2& to, double yaw)
+{
+    set_start(from.ground.head<2>());
+    return go_prepared(from, to, yaw);
 }
 
 /// The same if set_start() was called for a place near both ends.
-std::optional<SettledPose> WayJudge::go_prepared(const SettledPose& pose, const Vec2& to, double yaw)
+std::optional<RobotAtRest> WayJudge::go_prepared(const RobotAtRest& from, const Vec2& to, double yaw)
 {
-    const Vec2 from = pose.position.head<2>();
-    const double ground = pose.ground->height, length = (to - from).norm();
+    const Vec2 begin = from.ground.head<2>();
+    const double length = (to - begin).norm();
     std::vector<PlaceStates> places;
-    std::vector<SettledPose> poses;
-    const auto layers = heights_within(columns_.column_at(to).layers, shared_.map.z_limits);
-    for (const double height : std::vector(layers.begin(), layers.end())) {  // a copy: judging looks up columns, too
-        if (std::abs(height - ground) > length * steepest_ + max_step_ + limit_slack) continue;
-        SettledPose there = stand_.judge({to.x(), to.y(), height}, yaw);
-        if (there.verdict != Verdict::Valid) continue;
+    std::vector<RobotAtRest> there;
+    const ColumnView column(columns_.column_at(to));
+    for (const double height : heights_within(column.layers, shared_.map.z_limits)) {
+        if (std::abs(height - from.ground.z()) > length * steepest_ + max_step_ + limit_slack) continue;
+        const auto standing = stand(column, {to.x(), to.y(), height}, yaw);
+        if (!standing) continue;
         places.push_back({.ground = height, .valid = 1});
-        poses.push_back(std::move(there));
+        there.push_back(*standing);
     }
-    const auto k = lowest_step(pose, to, places, 0);
+    const auto k = lowest_step(from.ground, to, places, 0);
     if (!k) return std::nullopt;
-    const Course course{.begin = from, .end = to, .yaw = pose.yaw, .turn = turn_between(pose.yaw, yaw)};
-    if (!can_follow(course, state_of(pose), state_of(poses[*k]))) return std::nullopt;
-    return std::move(poses[*k]);
+    const Course course{.begin = begin, .end = to, .yaw = from.yaw, .turn = turn_between(from.yaw, yaw)};
+    return can_follow(course, from, there[*k]) ? std::optional(there[*k]) : std::nullopt;
+}
+
+/// Returns whether the robot meets nothing on a way. It is let down only if that is not certain without.
+bool WayJudge::can_follow(const Course& course, const RobotAtRest& from, const RobotAtRest& to)
+{
+    const int few = pieces_between(course, from.pose, to.pose, radius_).front();
+    if (!(from.pose.is_exact && to.pose.is_exact) &&
+        is_free(course, from.pose, to.pose, few, shared_.options.stand.lift))
+        return true;
+    return can_follow(course, exact_pose(from), exact_pose(to));
+}
+
+StatePose WayJudge::exact_pose(const RobotAtRest& standing)
+{
+    return standing.pose.is_exact ? standing.pose : state_of(stand_.judge(standing.ground, standing.yaw));
 }
 
 /// Returns the settled pose of a state.

@@ -57,6 +57,13 @@ struct StateAt {
     int heading;
 };
 
+/// Where a robot is at rest.
+struct RobotAtRest {
+    Vec3 ground;  ///< below its origin, m
+    double yaw;   ///< rad
+    StatePose pose;
+};
+
 /// How the position and the yaw of a robot change on a way.
 struct Course {
     Vec2 begin, end;
@@ -108,9 +115,9 @@ public:
     bool can_go(const StateAt& from, const StateAt& to, Way way);
 
     /// Drives along a way, in pieces of the same length, each of which complies with the rules for straight ways, with
-    /// settled poses at both ends. Returns these poses, except the first one; nothing if the robot cannot go. It may
-    /// end on another layer than that of `to`.
-    std::vector<SettledPose> follow(const StateAt& from, const StateAt& to, Way way, int pieces);
+    /// settled poses at both ends. Returns where it stands there, without the first place; nothing if the robot cannot
+    /// go. It may end on another layer than that of `to`.
+    std::vector<RobotAtRest> follow(const StateAt& from, const StateAt& to, Way way, int pieces);
     /// Returns into how many pieces a curve of a car is cut: of at most a step of the grid.
     int pieces_of_curve(Way way, int heading) const;
 
@@ -123,19 +130,21 @@ public:
     double flatness() const { return level_.flatness(); }
     /// Returns the height of the layer at (x, y) that is nearest to z, if it is at most `most` (m) away.
     std::optional<double> ground_near(const Vec3& place, double most);
-    /// Returns the settled pose on the ground at a place.
-    SettledPose stand(const Vec3& ground, double yaw) { return stand_.judge(ground, yaw); }
-    /// Returns the valid settled pose at a point at most longest_way away, at a yaw at most a sixteenth of a turn away,
-    /// to which the robot can go straight from a valid settled pose. As on the ways of a graph, it is on the layer with
-    /// the smallest step.
-    std::optional<SettledPose> go(const SettledPose& pose, const Vec2& to, double yaw);
+    /// Returns how the robot is at rest on the ground at a place, if that is a valid settled pose.
+    std::optional<RobotAtRest> stand(const Vec3& ground, double yaw);
+    /// Returns where the robot stands at a point at most longest_way away, at a yaw at most a sixteenth of a turn away,
+    /// if it can go there straight. As on the ways of a graph, it is on the layer with the smallest step.
+    std::optional<RobotAtRest> go(const RobotAtRest& from, const Vec2& to, double yaw);
 
 private:
     template <class Slope, class OtherSlope>
     std::optional<std::size_t> lowest_step(double length, double ground, std::span<const PlaceStates> others,
                                            int heading, const Slope& slope, const OtherSlope& other_slope) const;
-    std::optional<std::size_t> lowest_step(const SettledPose& pose, const Vec2& to, std::span<const PlaceStates> others,
+    std::optional<std::size_t> lowest_step(const Vec3& from, const Vec2& to, std::span<const PlaceStates> others,
                                            int heading);
+    std::optional<RobotAtRest> stand(const ColumnView& column, const Vec3& ground, double yaw);
+    StatePose exact_pose(const RobotAtRest& standing);
+    bool can_follow(const Course& course, const RobotAtRest& from, const RobotAtRest& to);
     double slope_at(const Vec2& at, const PlaceStates& place, int heading);
     double slope_at(const Vec2& at, double ground, const Vec2& ahead);
     bool has_head_room(const ColumnView& column, double height) const;
@@ -146,7 +155,7 @@ private:
     StatePose settled(const Vec2& at, double ground, int heading);
     Course course_of(const StateAt& from, const StateAt& to, Way way) const;
     bool passes_kink(const StateAt& from, const StateAt& to, const StatePose& pose, const StatePose& other, Way way);
-    std::optional<SettledPose> go_prepared(const SettledPose& pose, const Vec2& to, double yaw);
+    std::optional<RobotAtRest> go_prepared(const RobotAtRest& from, const Vec2& to, double yaw);
     bool can_follow(const Course& course, const StatePose& pose, const StatePose& other);
     bool can_climb(const Course& course, const StatePose& pose, const StatePose& other, int pieces);
     bool is_free(const Course& course, const StatePose& pose, const StatePose& other, int pieces, double lift);

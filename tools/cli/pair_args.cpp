@@ -36,7 +36,7 @@ void add_pair_limits(CLI::App& command, PairArgs& args)
                        "Smallest ratio of the path's length to the straight line, >= 1 (default 1)");
     command.add_flag("--fast-paths", args.fast_paths,
                      "Paths of pairs have 16 headings only: in the open they are up to 2.8 % longer, but are found in "
-                     "about a tenth of the time");
+                     "less time");
 }
 
 PairOptions pair_limits(const PairArgs& args)
