@@ -100,6 +100,7 @@ int main(int argc, char** argv)
     add_sample(app, chosen);
     add_heatmap(app, chosen);
     add_export(app, chosen);
+    add_audit(app, chosen);
     add_experiment(app, command_line(argc, argv), chosen);
     const std::vector<std::string> names = command_names(app);
     if (has_unknown_command(names, argc, argv))
