@@ -80,8 +80,10 @@ struct Scene {
     std::vector<std::uint32_t> triangle_pieces;  ///< one for each triangle
     std::vector<Piece> pieces;
     std::vector<Primitive> primitives;
-    std::optional<GeoOrigin> origin;     ///< from the first elevation model whose file contains it
-    std::vector<std::string> notices;    ///< for the user: for example, defaults that influenced the scene
+    std::optional<GeoOrigin> origin;   ///< from the first elevation model whose file contains it
+    std::vector<std::string> notices;  ///< for the user: for example, defaults that influenced the scene
+    /// What was left out because its file is missing or cannot be used, in words. `notices` has these texts, too.
+    std::vector<std::string> missing = {};
     std::vector<NameRule> rules;         ///< the rules that labelled an SDF or URDF world, in their order
     std::vector<FaceGroup> face_groups;  ///< of all meshes, part after part, in the order of their files
     /// The face group of each triangle: 1 + its index in face_groups; 0: none. May be shorter than `triangles`; those
@@ -128,7 +130,9 @@ struct SceneOptions {
     /// GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH and GAZEBO_MODEL_PATH, then in the folders above the file and
     /// their `models` folders.
     std::vector<std::filesystem::path> model_paths = {};
-    bool allow_missing = false;  ///< included models that are not found are left out with a notice instead of an error
+    /// Included models that are not found, and files of a scene.yaml that do not exist, are left out with a notice
+    /// instead of an error.
+    bool allow_missing = false;
     bool strict = false;  ///< other files that are not found (for example, a mesh) are an error instead of a notice
     /// Settings of a bare elevation model: keys as under `heightmap:`, for example "size: [513, 513], z: [0, 75]".
     std::string heightmap = {};

@@ -16,9 +16,9 @@ public:
     {
         printer_.PushDeclaration("xml version=\"1.0\" encoding=\"UTF-8\"");
         printer_.OpenElement("testsuites");
-        push_counts("spawnfield check");
+        push_counts("spawnfield " + report_.command);
         printer_.OpenElement("testsuite");
-        push_counts("spawnfield check " + report_.map);
+        push_counts("spawnfield " + report_.command + " " + report_.map);
         push("skipped", "0");
         push_properties();
         for (std::size_t i = 0; i < report_.cases; ++i) {
@@ -59,7 +59,7 @@ private:
     void push_case(const JunitCase& test)
     {
         printer_.OpenElement("testcase");
-        push("classname", report_.map + "." + report_.robot);
+        push("classname", report_.map + "." + (test.group.empty() ? report_.robot : test.group));
         push("name", test.name);
         push("time", "0");
         if (!test.type.empty()) {

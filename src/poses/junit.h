@@ -16,10 +16,12 @@ inline constexpr std::size_t text_piece = 1 << 20;  ///< bytes
 struct JunitCase {
     std::string name;
     std::string type = {}, message = {}, details = {};  ///< of the failure
+    std::string group = {};                             ///< if given: the class is "map.group" in place of "map.robot"
 };
 
 struct JunitReport {
-    std::string map, robot;  ///< names; the class of all test cases is "map.robot"
+    std::string command = "check";
+    std::string map, robot = {};  ///< names; the class of test cases is "map.robot"
     std::vector<std::pair<std::string, std::string>> properties;
     std::size_t cases = 0, failures = 0;
     std::function<JunitCase(std::size_t)> test_case;

@@ -377,6 +377,7 @@ void append_bodies(Scene& scene, const fs::path& file, std::vector<CollisionBody
         throw FileError(missing[0], std::to_string(missing.size()) +
                                         " files or parts are missing, and --strict does not allow this");
     scene.notices.insert(scene.notices.end(), missing.begin(), missing.end());
+    scene.missing = std::move(missing);
 }
 
 }  // namespace spawnfield

@@ -52,11 +52,31 @@ void note_unused_rules(const YamlMap& part, const std::vector<FaceRule>& rules, 
     }
 }
 
-/// Calls read(file) for a file that the part names. An error in the file is reported with the part and the key.
+/// State that all parts of a scene.yaml share.
+struct SceneFile {
+    fs::path folder;
+    const SceneOptions& options;
+    MeshFiles meshes;
+    Names names;  ///< names that label rules of the options can match
+
+    void add(const Names& more)
+    {
+        if (!options.labels.empty()) add_names(more, names);  // a scene may have 100,000 names
+    }
+};
+
+/// Calls read(file) for a file that the part names. An error in the file is reported with the part and the key. With
+/// SceneOptions::allow_missing, a part whose file does not exist has no geometry.
 template <class Read>
-void in_part(const YamlMap& map, const std::string& key, Read read)
+void in_part(const YamlMap& map, const std::string& key, const SceneFile& common, Scene& scene, Read read)
 {
-    const std::string file = map.text(key);
+    const fs::path file = common.folder / map.text(key);
+    if (common.options.allow_missing && !fs::exists(file)) {
+        scene.missing.push_back(map.file() + ": " + map.place() + ": " + key + ": " + file.string() +
+                                " is not found: it is ignored");
+        scene.notices.push_back(scene.missing.back());
+        return;
+    }
     try {
         read(file);
     } catch (const FileError& error) {
@@ -94,19 +114,6 @@ MeshOptions read_mesh_options(const YamlMap& part, const SceneOptions& options)
             mesh.rules.push_back(read_rule({rule, part.file(), part.place() + ": labels"}));
     return mesh;
 }
-
-/// State that all parts of a scene.yaml share.
-struct SceneFile {
-    fs::path folder;
-    const SceneOptions& options;
-    MeshFiles meshes;
-    Names names;  ///< names that label rules of the options can match
-
-    void add(const Names& more)
-    {
-        if (!options.labels.empty()) add_names(more, names);  // a scene may have 100,000 names
-    }
-};
 
 /// Reads the poses of `path:`. Times ascend, and a turn has a clear direction.
 TimedPath read_path(const YamlMap& part)
@@ -154,7 +161,8 @@ void read_moving_part(const YamlMap& map, const std::string& kind, SceneFile& fi
     MeshOptions mesh = read_mesh_options(map, file.options);
     mesh.rules.clear();
     mesh.auto_slope.reset();
-    in_part(map, "mesh", [&](const auto& from) { append_mesh(still, 0, *file.meshes.read(file.folder / from), mesh); });
+    in_part(map, "mesh", file, scene,
+            [&](const fs::path& from) { append_mesh(still, 0, *file.meshes.read(from), mesh); });
     append_swept(scene, part, still, path, window);
     scene.parts[part].open_edges = still.parts[0].open_edges;
     scene.notices.insert(scene.notices.end(), still.notices.begin(), still.notices.end());
@@ -192,9 +200,8 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
     const std::uint32_t part = add_part(scene, name, kind, label);
     if (kind == "mesh") {
         const MeshOptions mesh = read_mesh_options(map, file.options);
-        in_part(map, "mesh", [&](const auto& path) {
-            const std::span<const FaceGroup> groups = append_mesh(scene, part, *file.meshes.read(file.folder / path),
-                                                                  mesh);
+        in_part(map, "mesh", file, scene, [&](const fs::path& path) {
+            const std::span<const FaceGroup> groups = append_mesh(scene, part, *file.meshes.read(path), mesh);
             note_unused_rules(map, mesh.rules, groups, scene);
             file.add(names_of(groups));
         });
@@ -206,16 +213,16 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
     } else if (kind == "heightmap") {
         const HeightmapOptions heightmap = read_heightmap_options(map.map("heightmap"));
         const bool up = map.one_of("sides", {"both", "up"}, "both") == "up";
-        in_part(map.map("heightmap"), "file", [&](const auto& path) {
-            const Heightmap found = read_heightmap(file.folder / path, heightmap);
+        in_part(map.map("heightmap"), "file", file, scene, [&](const fs::path& path) {
+            const Heightmap found = read_heightmap(path, heightmap);
             append_heightmap(scene, part, found, map.pose(), up);
             place_scene(scene, found, map.pose(), map.file() + ": " + map.place());
         });
     } else if (kind == "octomap") {
         const Unknown given = map.one_of("unknown", {"free", "blocked"}, "free") == "blocked" ? Unknown::Blocked
                                                                                               : Unknown::Free;
-        in_part(map, "octomap", [&](const auto& path) {
-            append_octomap(scene, part, file.folder / path, map.pose(), file.options.unknown.value_or(given),
+        in_part(map, "octomap", file, scene, [&](const fs::path& path) {
+            append_octomap(scene, part, path, map.pose(), file.options.unknown.value_or(given),
                            by_name ? std::nullopt : read_auto_slope(map, file.options));
         });
     } else {

@@ -33,6 +33,7 @@ void add_commands(CLI::App& app, const std::string& command_line, ChosenCommand&
     add_sample(app, chosen);
     add_heatmap(app, chosen);
     add_export(app, chosen);
+    add_audit(app, chosen);
     add_experiment(app, command_line, chosen);
 }
 

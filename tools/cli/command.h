@@ -16,7 +16,8 @@ enum ExitStatus {
     failure = 1,
     wrong_usage = 2,
     fewer_found = 3,
-    not_valid = 3,  ///< check --require-valid
+    not_valid = 3,    ///< check --require-valid
+    rule_broken = 3,  ///< audit --rules
     input_refused = 4,
     interrupted = 130
 };
@@ -69,6 +70,7 @@ void add_search(CLI::App& app, ChosenCommand& chosen);
 void add_sample(CLI::App& app, ChosenCommand& chosen);
 void add_heatmap(CLI::App& app, ChosenCommand& chosen);
 void add_export(CLI::App& app, ChosenCommand& chosen);
+void add_audit(CLI::App& app, ChosenCommand& chosen);
 void add_experiment(CLI::App& app, const std::string& command_line, ChosenCommand& chosen);
 
 /// Adds all commands and the text of the program's help. `command_line`: for reports. `chosen` must have its host.

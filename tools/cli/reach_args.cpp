@@ -107,8 +107,6 @@ void add_islands(CLI::App& command, IslandArgs& args)
     add_reach(command, args);
 }
 
-namespace {
-
 ReachOptions reach_options(const QueryArgs& query, const ReachArgs& args)
 {
     return {.drive = args.drive.empty() ? std::nullopt : std::optional(drive_called(args.drive)),
@@ -117,8 +115,6 @@ ReachOptions reach_options(const QueryArgs& query, const ReachArgs& args)
             .step = args.reach_step,
             .threads = query.threads};
 }
-
-}  // namespace
 
 namespace {
 

@@ -28,6 +28,9 @@ inline const std::vector<std::string> reach_option_names{"--drive", "--turning-r
 void add_islands(CLI::App& command, IslandArgs& args);
 inline const std::vector<std::string> island_option_names{"--island", "--min-island", "--reachable-from"};
 
+/// Returns the options of a ReachGraph, without progress.
+ReachOptions reach_options(const QueryArgs& query, const ReachArgs& args);
+
 /// Finds where the robot can drive, and puts the number of islands and the time into the summary. `command` is what the
 /// progress bar shows; `keep_ways`: ReachOptions::keep_ways.
 ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Session& session, Summary& summary,

@@ -60,7 +60,9 @@ void add_scene_options(CLI::App& command, SceneArgs& args)
     auto* strict = command.add_flag(
         "--strict", args.strict,
         "Refuse a world with a missing file, for example a mesh (missing includes are always refused)");
-    command.add_flag("--allow-missing", args.allow_missing, "Leave out included models that are not found")
+    command
+        .add_flag("--allow-missing", args.allow_missing,
+                  "Leave out included models, and files of a scene.yaml, that are not found")
         ->excludes(strict);
 }
 
