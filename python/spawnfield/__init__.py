@@ -12,6 +12,7 @@ Lengths are in metres and angles in radians, x forward, y left, z up (REP-103). 
 
 from ._core import version as _version
 from .audits import Audit, audit, spawn_ok
+from .batches import Batch, batch
 from .errors import ArgumentError, FileError, NothingFits, NotValid, SpawnfieldError
 from .options import options
 from .pool import Pool
@@ -22,7 +23,7 @@ from .world import World, bake, info, open
 
 __version__ = _version()
 __all__ = [
-    "VALID", "VERDICTS", "ArgumentError", "Audit", "FileError", "Fleet", "NotValid", "NothingFits", "Pairs", "Picture",
-    "Pool", "Raster", "Robot", "Scene", "SpawnfieldError", "Spawns", "Verdicts", "World", "audit", "bake", "info",
-    "open", "options", "spawn_ok",
+    "VALID", "VERDICTS", "ArgumentError", "Audit", "Batch", "FileError", "Fleet", "NotValid", "NothingFits", "Pairs",
+    "Picture", "Pool", "Raster", "Robot", "Scene", "SpawnfieldError", "Spawns", "Verdicts", "World", "audit", "bake",
+    "batch", "info", "open", "options", "spawn_ok",
 ]  # fmt: skip
