@@ -16,7 +16,7 @@ robot = sf.Robot(project / "maps/robots/husky.yaml")
 spawns = world.sample(robot, 100, min_distance=1.0, yaw="random", seed=7)
 print(f"{len(spawns)} spawns; the first is at {np.round(spawns.pose[0, :3], 3)} m")
 
-poses = [[0, 0, 0.3], [7, 7, 0.1], [2.6, 3.0, 0.1]]  # x, y, z; also with yaw, rpy or a quaternion
+poses = [[0, 0, 0.3], [7, 7, 0.1], [5.6, 0.0, 0.1]]  # x, y, z; also with yaw, rpy or a quaternion
 verdicts = world.check(robot, poses, settle=True, repair=2.0)
 for pose, reason, distance in zip(poses, verdicts.reason, verdicts.repair_distance):
     print(pose, reason, "" if np.isnan(distance) else f"(a valid pose is {distance:.2f} m away)")
