@@ -161,11 +161,13 @@ Ending run_audit(const AuditArgs& args, const CLI::App& command, Summary& summar
 {
     const AuditRules rules = args.rules.empty() ? AuditRules() : read_audit_rules(args.rules);
     AuditOptions options = audit_options(args, command);
-    AuditReport report{.part_limits = {.gap = parse_not_negative("--gap", args.gap, "m"),
-                                       .overlap = parse_positive("--overlap", args.overlap),
-                                       .allow = rules.allow,
-                                       .threads = args.threads},
-                       .min_room = options.min_room};
+    // Not as one initializer: if a part of it throws, gcc 12 destroys the map of the report twice.
+    AuditReport report;
+    report.part_limits.gap = parse_not_negative("--gap", args.gap, "m");
+    report.part_limits.overlap = parse_positive("--overlap", args.overlap);
+    report.part_limits.allow = rules.allow;
+    report.part_limits.threads = args.threads;
+    report.min_room = options.min_room;
     const JudgeOptions limits = judge_options(args, summary.exact_time);
     report.poses = options.poses = audited_poses(rules, named_poses(args));
     const std::vector<Robot> robots = load_robots(args, command);
