@@ -12,9 +12,7 @@ from typing import Any
 from . import commands
 from .robot import Robot
 from .scene import scene_of
-from .world import World, _poses, bake
-
-File = str | os.PathLike[str]
+from .world import File, World, bake, poses_word, robot_word
 
 
 class Audit:
@@ -67,14 +65,9 @@ def audit(
     else:
         word = os.fspath(scene)
     words = [word]
-    for one in robot if isinstance(robot, list) else [robot]:
-        name = one.file if isinstance(one, Robot) else os.fspath(one)
-        if isinstance(one, Robot):
-            inputs[name] = one._core
-        words.append(f"--robot={name}")
-    if poses is not None and not isinstance(poses, (str, os.PathLike)):
-        inputs["poses in memory"] = _poses(poses, has_text=True)
-        poses = "poses in memory"
+    words += [robot_word(one, inputs, options) for one in (robot if isinstance(robot, list) else [robot])]
+    if poses is not None:
+        poses = poses_word(poses, inputs, has_text=True)
     given = {"format": "json", **options, "poses": poses}
     with tempfile.TemporaryDirectory(prefix="spawnfield-") as folder:
         if isinstance(rules, Mapping):

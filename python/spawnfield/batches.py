@@ -16,8 +16,8 @@ from typing import Any
 from .commands import logger, progress_bar
 from .errors import ArgumentError
 from .results import write_bytes
+from .world import File
 
-File = str | os.PathLike[str]
 Row = dict[str, Any]
 
 _CRASHED = "the process ended while it worked on this world: it crashed, or was killed"

@@ -53,15 +53,13 @@ class Pool:
             raise ArgumentError(f"--size is {size}, needs >= 1")
         options = {"yaw": "random", "quiet": True, **options}
         self._pose = "start" if pairs else "pose"
-        self._seed = seed
         self._decks = [_Deck(size, seed, k) for k in range(len(worlds))]
         self._changed = threading.Condition()
         self._failure: BaseException | None = None
         self._is_closed = False
         self._tensors: dict[Any, Any] = {}
-        work = [(deck, w, r) for deck, w, r in zip(self._decks, worlds, robots)]
-        self._maker = threading.Thread(target=self._make, args=(work, size, pairs, options), daemon=True)
-        self._maker.start()
+        work = list(zip(self._decks, worlds, robots))
+        threading.Thread(target=self._make, args=(work, size, pairs, options), daemon=True).start()
         if not background:
             self.wait()
 
@@ -70,7 +68,6 @@ class Pool:
         """Returns a pool of given rows, for example those of `save`; a column ``world`` is optional."""
         pool = cls.__new__(cls)
         pool._pose = "pose" if "pose" in columns else "start"
-        pool._seed = seed
         world = np.asarray(columns.get("world", np.zeros(len(columns[pool._pose]), np.int64)))
         pool._decks = []
         for k in range(int(world.max(initial=0)) + 1):
@@ -199,14 +196,12 @@ class Pool:
         deck = self._decks[k]
         if count > deck.size:
             raise ArgumentError(f"--count is {count}, but world {k} has {deck.size} rows; make a larger pool")
-        if deck.can_take(count):  # the usual case, without a lock
-            return deck.take(count) if min_distance <= 0 else deck.take_apart(count, min_distance, self._pose)
-        with self._changed:
-            while not self._failure and not deck.can_take(count) and not deck.is_complete:
-                self._changed.wait(0.1)
-            self._raise_failure()
-        if count > deck.size:
-            return self._take(k, count, min_distance)  # raises: the world has fewer rows than it was asked for
+        if not deck.can_take(count):  # in the usual case, there is no lock
+            with self._changed:
+                while not self._failure and not deck.can_take(count):
+                    self._changed.wait(0.1)
+                self._raise_failure()
+            return self._take(k, count, min_distance)  # the world may have fewer rows than it was asked for
         return deck.take(count) if min_distance <= 0 else deck.take_apart(count, min_distance, self._pose)
 
     def _fill(self, out: Any, rows: np.ndarray, drawn: "Draw") -> None:
@@ -234,11 +229,8 @@ class Pool:
                 while not self._is_closed and deck.made < size:
                     wanted = min(_CHUNK, size - deck.made)
                     seed = deck.next_seed()
-                    found = (
-                        world.sample(robot, pairs=wanted, seed=seed, progress=False, **options)
-                        if pairs
-                        else world.sample(robot, wanted, seed=seed, progress=False, **options)
-                    )
+                    number = {"pairs" if pairs else "count": wanted}
+                    found = world.sample(robot, **number, seed=seed, progress=False, **options)
                     with self._changed:
                         if len(found) == 0:
                             raise ArgumentError(f"no valid pose was found in {world.name} for the pool")

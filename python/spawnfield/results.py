@@ -6,7 +6,7 @@ All lengths are in metres and angles in radians. The frame is that of the world:
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -333,8 +333,3 @@ def _is_notebook() -> bool:
         return False
     shell = get_ipython()
     return shell is not None and shell.__class__.__name__ == "ZMQInteractiveShell"
-
-
-def verdict_names(codes: Sequence[int] | np.ndarray) -> list[str]:
-    """Returns the verdicts with these codes in words."""
-    return [VERDICTS[int(code)] for code in codes]

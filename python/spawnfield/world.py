@@ -146,11 +146,9 @@ class World:
         inputs: dict[str, Any] = {}
         if poses is not None and "poses" in options:
             raise ArgumentError("--poses is given twice")
-        if isinstance(poses, (str, os.PathLike)):
-            options["poses"] = os.fspath(poses)
-        elif poses is not None:
-            options["poses"] = "poses in memory"
-            inputs[options["poses"]] = _poses(poses, has_text="out" in options or "repaired" in options)
+        if poses is not None:
+            has_text = "out" in options or "repaired" in options
+            options["poses"] = poses_word(poses, inputs, has_text)
         wants_text = options.get("pairs") is not None and "out" not in options
         outcome = self._run("check", robot, options, progress, inputs, wants_text)
         found = Verdicts(outcome.result, outcome.summary) if outcome.result is not None else outcome.text
@@ -187,9 +185,8 @@ class World:
             **options: for example ``quantity="clearance", spawns=FILE``. ``spawns`` may be Spawns or an array of poses.
         """
         inputs: dict[str, Any] = {}
-        if options.get("spawns") is not None and not isinstance(options["spawns"], (str, os.PathLike)):
-            inputs["spawns in memory"] = _poses(options["spawns"], has_text=False)
-            options["spawns"] = "spawns in memory"
+        if options.get("spawns") is not None:
+            options["spawns"] = poses_word(options["spawns"], inputs, has_text=False)
         with tempfile.TemporaryDirectory(prefix="spawnfield-") as folder:
             file = Path(folder) / f"picture.{format}"
             outcome = self._run("heatmap", robot, {**options, "out": str(file)}, progress, inputs)
@@ -204,9 +201,8 @@ class World:
         """Writes files for simulators and other programs, as ``spawnfield export``. Returns the text if the option
         ``out`` is not given. ``poses`` may be spawns or an array."""
         inputs: dict[str, Any] = {}
-        if options.get("poses") is not None and not isinstance(options["poses"], (str, os.PathLike)):
-            inputs["poses in memory"] = _poses(options["poses"], has_text=True)
-            options["poses"] = "poses in memory"
+        if options.get("poses") is not None:
+            options["poses"] = poses_word(options["poses"], inputs, has_text=True)
         wants_text = "out" not in options
         outcome = self._run("export", robot, options, progress, inputs, wants_text)
         return outcome.text if wants_text else None
@@ -228,30 +224,40 @@ class World:
         self, command: str, robot: Robot | File | None, options: Mapping[str, Any], progress: bool | None,
         inputs: Mapping[str, Any] | None = None, wants_text: bool = False,
     ) -> commands.Outcome:  # fmt: skip
-        named = dict(options)
         things = {self.folder: self._core, **(inputs or {})}
         words = [self.folder]
-        if isinstance(robot, Robot):
-            if given := [option for option in _ROBOT_OPTIONS if named.get(option) is not None]:
-                raise ArgumentError(f"--{given[0].replace('_', '-')} is for a robot's file; give it to Robot()")
-            things[robot.file] = robot._core
-            words.append(f"--robot={robot.file}")
-        elif robot is not None:
-            words.append(f"--robot={os.fspath(robot)}")
-        return commands.run(command, words, named, things, wants_text, progress)
+        if robot is not None:
+            words.append(robot_word(robot, things, options))
+        return commands.run(command, words, options, things, wants_text, progress)
 
 
-def _poses(poses: Any, has_text: bool) -> _core.Poses:
-    """Returns poses in the form that the commands use."""
+def robot_word(robot: Robot | File, inputs: dict[str, Any], options: Mapping[str, Any]) -> str:
+    """Returns the option ``--robot``, and adds a robot in memory to the inputs. Raises ArgumentError if it is in
+    memory, and `options` say how its file is read."""
+    if not isinstance(robot, Robot):
+        return f"--robot={os.fspath(robot)}"
+    if given := [option for option in _ROBOT_OPTIONS if options.get(option) is not None]:
+        raise ArgumentError(f"--{given[0].replace('_', '-')} is for a robot's file; give it to Robot()")
+    inputs[robot.file] = robot._core
+    return f"--robot={robot.file}"
+
+
+def poses_word(poses: Any, inputs: dict[str, Any], has_text: bool) -> str:
+    """Returns what stands for poses in a command: the name of their file, or a name under which poses in memory are
+    added to the inputs. `has_text`: the command writes them to a file."""
+    if isinstance(poses, (str, os.PathLike)):
+        return os.fspath(poses)
+    word = "poses in memory"
     if hasattr(poses, "pose"):
         poses = poses.pose
     numbers = np.ascontiguousarray(_host_array(poses), np.float64)
     if numbers.ndim == 1:
         numbers = numbers[None, :]
     try:
-        return _core.poses(numbers, has_text)
+        inputs[word] = _core.poses(numbers, has_text)
     except _core.ArgumentError as error:
         raise translated(error) from None
+    return word
 
 
 def info(what: File | Scene, *, progress: bool | None = None, **options: Any) -> dict[str, Any]:
