@@ -629,6 +629,30 @@ TEST_CASE("nothing is proven beside holes, cracks and T-junctions of the ground,
         CHECK(check_proven(map_of(scene), robot, 0.13) > 0);
 }
 
+TEST_CASE("a robot over an end of the ground is proven if its feet on the ground carry it")
+{
+    Scene scene;
+    add_block(scene, {-2, -2, -1}, {2, 2, 0});
+    const TestMap map = map_of(scene);
+    const auto proves = [&](const Robot& robot, const Vec2& at, double yaw) {
+        const Judge judge(map, robot);
+        WayJudge ways(judge.impl(), 0.03, Lattice(), 0.1);
+        const auto standing = ways.stand({at.x(), at.y(), 0}, yaw);
+        return standing && !standing->pose.is_exact;
+    };
+    const Robot box = boxy({0.5, 0.3, 0.25});
+    for (const double yaw : {0.0, 0.3, 2.0}) {
+        CAPTURE(yaw);
+        CHECK(proves(box, {1.98, 0}, yaw));
+        CHECK(proves(box, {-1.98, 1.98}, yaw));
+        CHECK_FALSE(proves(box, {1.998, 0}, yaw));  // its mass is too near to the end
+        CHECK_FALSE(proves(box, {2, 0}, yaw));
+    }
+    CHECK(proves(wheeled(), {1.7, 0}, 0));                      // a part of its body is over the end
+    CHECK_FALSE(proves(wheeled(), {1.8, 0}, 0));                // its front wheels, too
+    CHECK(proves(wheeled(), {1.73, 0}, std::numbers::pi / 2));  // parts of two wheels
+}
+
 TEST_CASE("what is proven of real robots is right", "[real]")
 {
     const auto folder = shared_scenes();

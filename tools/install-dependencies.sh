@@ -3,6 +3,7 @@
 # Without an option it installs what the build of spawnfield needs. --tests adds the packages that only tests and
 # benchmarks need, --experiments those of the plots. It needs root or sudo only if a package is missing.
 set -euo pipefail
+cd "$(dirname "$0")/.."
 
 # ccache is in the list because installing it later changes every compile command, so that everything is built again.
 packages=(
@@ -40,6 +41,13 @@ if [ "$(id -u)" -ne 0 ]; then
     exit 1
   fi
   as_root=(sudo)
+fi
+# One of the packages needs the package ca-certificates, which replaces a list of certificates that somebody copied to
+# its place, as on many containers behind a company's proxy. tools/pip-settings.sh still needs that list.
+certificates=/etc/ssl/certs/ca-certificates.crt
+if [ -r "$certificates" ] && ! dpkg-query -W ca-certificates >/dev/null 2>&1; then
+  mkdir -p build
+  cp "$certificates" build/certificates.crt
 fi
 echo "installing ${missing[*]}" >&2
 export DEBIAN_FRONTEND=noninteractive

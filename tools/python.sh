@@ -8,9 +8,8 @@ tools/install-dependencies.sh
 folder=build/python-package
 mkdir -p build out
 /usr/bin/python3 -m venv --clear "$folder"
-certificates=/etc/ssl/certs/ca-certificates.crt
-[ ! -r "$certificates" ] || export PIP_CERT=${PIP_CERT:-$certificates}
+source tools/pip-settings.sh
 echo "building the Python package (some minutes the first time)" >&2
-"$folder/bin/pip" install --no-input --disable-pip-version-check --quiet .
+"$folder/bin/pip" install --quiet .
 "$folder/bin/python" python/examples/first_steps.py
 echo "$folder/bin/python has the package now: import spawnfield"

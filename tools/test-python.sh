@@ -11,10 +11,8 @@ cmp -s "$wanted" "$folder/requirements.txt" && exit 0
 echo "installing Python packages into $folder" >&2
 mkdir -p build
 log=build/python.log
-# pip has its own certificates. The certificates of the system are also right behind the proxy of a company.
-certificates=/etc/ssl/certs/ca-certificates.crt
-[ ! -r "$certificates" ] || export PIP_CERT=${PIP_CERT:-$certificates}
-pip=("$folder/bin/python" -m pip install --no-input --disable-pip-version-check --only-binary :all: --retries 1)
+source tools/pip-settings.sh
+pip=("$folder/bin/python" -m pip install --only-binary :all: --retries 1)
 /usr/bin/python3 -m venv --clear "$folder" >"$log"
 if "${pip[@]}" --requirement "$wanted" >>"$log" 2>&1; then
   cp "$wanted" "$folder/requirements.txt"

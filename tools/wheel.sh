@@ -6,9 +6,7 @@ cd "$(dirname "$0")/.."
 
 tools/install-dependencies.sh
 mkdir -p build out
-certificates=/etc/ssl/certs/ca-certificates.crt
-[ ! -r "$certificates" ] || export PIP_CERT=${PIP_CERT:-$certificates}
-export PIP_NO_INPUT=1 PIP_DISABLE_PIP_VERSION_CHECK=1
+source tools/pip-settings.sh
 
 tools=build/wheel-tools
 /usr/bin/python3 -m venv --clear "$tools"

@@ -16,7 +16,6 @@ void GraphBuilder::StateRow::clear()
 {
     first.clear();
     places.clear();
-    details.clear();
     left.clear();
 }
 
@@ -49,9 +48,10 @@ DisjointSets GraphBuilder::run()
         const auto report = [&](double share) {
             if (graph_.options.progress) graph_.options.progress((begin + share * (end - begin)) / rows);
         };
-        find_blocks(begin, end);
+        find_blocks(begin, end, report);
         reuse_rows(begin, end);
-        parallel_for(std::size_t(end - begin), threads, report, [&](std::size_t k) { find_states(begin + int(k)); });
+        parallel_for(std::size_t(end - begin), threads, {},
+                     [&](std::size_t k) { collect_states(begin + int(k), int(k)); });
         for (int row = begin; row < end; ++row) append(rows_[std::size_t(row)]);
         const auto for_rows = [&](int from, int to, auto&& visit) {
             parallel_for(std::size_t(to - from), threads, {}, [&](std::size_t k) { visit(from + int(k)); });
@@ -83,16 +83,33 @@ std::size_t GraphBuilder::number_of(const PlaceAt& at) const
     return graph_.first[graph_.column_of(at.col, at.row)] + at.index;
 }
 
-/// Finds the blocks of some rows whose columns all have the same open place. Most of a wide level place needs no more
-/// than that.
-void GraphBuilder::find_blocks(int begin, int end)
+/// Finds the places of some rows, in blocks of columns. So threads share the work evenly, also where one row has most
+/// of it.
+void GraphBuilder::find_blocks(int begin, int end, const Progress& report)
 {
-    blocks_.assign(std::size_t(graph_.grid.cols / block + 1), std::nullopt);
-    parallel_for(blocks_.size(), graph_.options.threads, {}, [&](std::size_t b) {
-        const int first = int(b) * block, last = std::min(first + block, graph_.grid.cols) - 1;
-        if (first <= last)
-            blocks_[b] = graph_.way_judges.local().place_of_all(position(first, begin), position(last, end - 1));
+    std::swap(blocks_, blocks_before_);
+    blocks_.resize(std::size_t((graph_.grid.cols + block - 1) / block));
+    parallel_for(blocks_.size(), graph_.options.threads, report, [&](std::size_t b) {
+        const int first = int(b) * block;
+        blocks_[b] = block_at(first, std::min(first + block, graph_.grid.cols), begin, end);
     });
+}
+
+/// Returns the places of a rectangle of columns. Most of a wide level place needs only a look at all of it.
+GraphBuilder::Block GraphBuilder::block_at(int first_col, int end_col, int begin, int end)
+{
+    WayJudge& judge = graph_.way_judges.local();
+    Block out;
+    out.same = judge.place_of_all(position(first_col, begin), position(end_col - 1, end - 1));
+    for (int row = begin; row < end && !out.same; ++row) {
+        out.first.push_back(out.places.size());
+        for (int col = first_col; col < end_col; ++col) {
+            const std::size_t before = out.places.size();
+            judge.find_places(position(col, row), out.places, out.details);
+            out.counts.push_back(std::uint32_t(out.places.size() - before));
+        }
+    }
+    return out;
 }
 
 /// Gives new rows the memory of rows that are not needed any more.
@@ -105,18 +122,23 @@ void GraphBuilder::reuse_rows(int begin, int end)
     }
 }
 
-void GraphBuilder::find_states(int row)
+/// Sets the places of a row, which is the one with this index in the blocks.
+void GraphBuilder::collect_states(int row, int index)
 {
     StateRow& out = rows_[std::size_t(row)];
-    WayJudge& judge = graph_.way_judges.local();
-    for (int col = 0; col < graph_.grid.cols; ++col) {
-        out.first.push_back(std::uint32_t(out.places.size()));
-        if (const auto& same = blocks_[std::size_t(col / block)])
-            out.places.push_back(*same);
-        else
-            judge.find_places(position(col, row), out.places, out.details);
+    out.first.push_back(0);
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+        const Block& states = blocks_[b];
+        const int cols = std::min(block, graph_.grid.cols - int(b) * block);
+        std::size_t next = states.same ? 0 : states.first[std::size_t(index)];
+        for (int col = 0; col < cols; ++col) {
+            const std::size_t count = states.same ? 1 : states.counts[std::size_t(index * cols + col)];
+            const PlaceStates* const places = states.same ? &*states.same : states.places.data() + next;
+            out.places.insert(out.places.end(), places, places + count);
+            out.first.push_back(std::uint32_t(out.places.size()));
+            next += count;
+        }
     }
-    out.first.push_back(std::uint32_t(out.places.size()));
 }
 
 /// Appends the places of a row to the graph.

@@ -26,11 +26,20 @@ public:
     DisjointSets run();
 
 private:
+    /// The places of some columns next to each other, of the rows that are examined together.
+    struct Block {
+        std::optional<PlaceStates> same;  ///< the only place of each column, if all have the same open one
+        /// Otherwise: how many places each column has, row by row, these places, the first one of each row, and
+        /// details.
+        std::vector<std::uint32_t> counts;
+        std::vector<PlaceStates> places;
+        std::vector<std::size_t> first;
+        DetailsStore details;
+    };
     /// The places of a row.
     struct StateRow {
         std::vector<std::uint32_t> first;  ///< first place of each column; then their number
         std::vector<PlaceStates> places;
-        DetailsStore details;  ///< of the places
         /// For each column whose only place is open, its node, later a number of the set of this node; else `none`.
         std::vector<std::uint32_t> open_sets;
         std::vector<std::uint32_t> run;  ///< how many columns up to this one have the same open set
@@ -57,9 +66,10 @@ private:
     std::uint32_t node_of(const PlaceAt& at, int heading) const { return graph_.node_of(number_of(at), heading); }
     Vec2 position(int col, int row) const { return {graph_.grid.x_of(col), graph_.grid.y_of(row)}; }
 
-    void find_blocks(int begin, int end);
+    void find_blocks(int begin, int end, const Progress& report);
+    Block block_at(int first_col, int end_col, int begin, int end);
     void reuse_rows(int begin, int end);
-    void find_states(int row);
+    void collect_states(int row, int index);
     void append(const StateRow& row);
     void find_open_nodes(int row);
     void join_open(int row);
@@ -77,10 +87,9 @@ private:
     const bool keeps_ways_, is_car_;
     std::vector<Pass> passes_;
     std::vector<StateRow> rows_;
-    std::vector<StateRow> spare_;  ///< rows that are not needed any more; others use their memory
-    /// For each block of columns of the rows that are examined, the place that all of its columns have, if they have
-    /// the same open one.
-    std::vector<std::optional<PlaceStates>> blocks_;
+    std::vector<StateRow> spare_;       ///< rows that are not needed any more; others use their memory
+    std::vector<Block> blocks_;         ///< of the rows that are examined
+    std::vector<Block> blocks_before_;  ///< of the rows before them, which have their details there
     DisjointSets nodes_;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
 
 namespace spawnfield {
 namespace {
@@ -48,31 +49,46 @@ void ReachGraph::Impl::find_islands(DisjointSets& nodes)
     set_places();
 }
 
-/// Sets the place and the heights of each island.
+/// Sets the heights of each island, and its place: the one nearest to the middle of all of its places; of equally near
+/// ones, the first.
 void ReachGraph::Impl::set_places()
 {
     const double infinity = std::numeric_limits<double>::infinity();
     std::vector<Eigen::Vector2d> middles(islands.size(), Eigen::Vector2d::Zero());
     std::vector<std::uint32_t> counts(islands.size(), 0);
-    std::vector<double> nearest(islands.size(), infinity);
     for (Island& island : islands) island.low = infinity, island.high = -infinity;
-    const auto for_each = [&](const auto& visit) {
-        for_each_place([&](std::size_t p, double x, double y) {
-            for_each_island(p, [&](std::uint32_t island) { visit(island, Vec3(x, y, ground[p])); });
+    for_each_place(0, grid.rows, [&](std::size_t p, double x, double y) {
+        for_each_island(p, [&](std::uint32_t i) {
+            islands[i].low = std::min(islands[i].low, ground[p]);
+            islands[i].high = std::max(islands[i].high, ground[p]);
+            middles[i] += Eigen::Vector2d(x, y);
+            ++counts[i];
         });
+    });
+    for (std::size_t i = 0; i < islands.size(); ++i) middles[i] /= counts[i];
+    struct Nearest {
+        double distance = std::numeric_limits<double>::infinity();  ///< from the middle, m
+        std::size_t place = 0;
+        Vec3 at = Vec3::Zero();
     };
-    for_each([&](std::uint32_t i, const Vec3& at) {
-        islands[i].low = std::min(islands[i].low, at.z());
-        islands[i].high = std::max(islands[i].high, at.z());
-        middles[i] += at.head<2>();
-        ++counts[i];
+    const auto take = [](Nearest& best, const Nearest& other) {
+        if (std::tie(other.distance, other.place) < std::tie(best.distance, best.place)) best = other;
+    };
+    PerThread<std::vector<Nearest>> nearest_of_threads(std::vector<Nearest>(islands.size()));
+    constexpr int part = 64;  // rows
+    parallel_for(std::size_t((grid.rows + part - 1) / part), options.threads, {}, [&](std::size_t k) {
+        std::vector<Nearest>& nearest = nearest_of_threads.local();
+        for_each_place(int(k) * part, std::min(grid.rows, int(k + 1) * part), [&](std::size_t p, double x, double y) {
+            for_each_island(p, [&](std::uint32_t i) {
+                const double distance = (Eigen::Vector2d(x, y) - middles[i]).norm();
+                if (distance <= nearest[i].distance) take(nearest[i], {distance, p, {x, y, ground[p]}});
+            });
+        });
     });
-    for_each([&](std::uint32_t i, const Vec3& at) {
-        const double distance = (at.head<2>() - middles[i] / counts[i]).norm();
-        if (!(distance < nearest[i])) return;
-        nearest[i] = distance;
-        islands[i].place = at;
-    });
+    std::vector<Nearest> nearest(islands.size());
+    for (const std::vector<Nearest>& of_thread : nearest_of_threads)
+        for (std::size_t i = 0; i < islands.size(); ++i) take(nearest[i], of_thread[i]);
+    for (std::size_t i = 0; i < islands.size(); ++i) islands[i].place = nearest[i].at;
 }
 
 std::optional<std::size_t> ReachGraph::Impl::island_of(const SettledPose& pose) const

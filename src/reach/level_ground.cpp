@@ -20,8 +20,7 @@ constexpr double contact_gap = 1e-3;  // m: as in Settler
 
 /// Returns the extreme points of a robot in horizontal directions that are tilted by `down`, as corners of a polygon.
 template <class KeepPart, class KeepPoint>
-Polygon2 outline_of(const std::vector<Convex>& parts, double down, const KeepPart& keep_part,
-                    const KeepPoint& keep_point)
+Polygon2 outline_of(std::span<const Convex> parts, double down, const KeepPart& keep_part, const KeepPoint& keep_point)
 {
     Polygon2 points;
     for (const Convex& part : parts) {
@@ -99,23 +98,11 @@ std::pair<double, double> part_in(const Vec2& p, const Vec2& q, std::span<const 
     return {low, high};
 }
 
-Polygon2 rotated(const Polygon2& polygon, double yaw)
+Polygon2 rotated(const Polygon2& polygon, const Eigen::Matrix2d& rotation)
 {
-    const Eigen::Matrix2d rotation = rotation_from_rpy(0, 0, yaw).topLeftCorner<2, 2>();
     Polygon2 out;
     for (const Vec2& corner : polygon) out.push_back(rotation * corner);
     return out;
-}
-
-/// Returns the largest difference between ground and plane for which the proof holds, m; 0 if there is none. `margin`,
-/// `mass_height`: of the level robot on a plane; `radius`: distance of its farthest point from its origin, m.
-double largest_flatness(double margin, double mass_height, double radius, double min_stability)
-{
-    constexpr double reserve = 0.5;  // of each limit, for slopes and rounding
-    const double least = margin - min_stability - 2 * contact_gap;
-    if (!(least > 0) || !(mass_height > 0)) return 0;
-    const double by_tilt = margin * margin / (4 * mass_height), by_gap = contact_gap / (2 + 8 * radius / margin);
-    return reserve * std::min(by_tilt, by_gap);
 }
 
 }  // namespace
@@ -142,16 +129,32 @@ LevelGround::LevelGround(const Judge::Impl& shared) : shared_(shared)
     // A disc that lies on nearly level ground may touch it at a few points of its rim only.
     const auto has_feet = [](const Convex& body) { return body.disc == 0 || std::abs(body.axis.z()) < upright; };
     const auto is_low = [&](const Vec3& point) { return point.z() <= lowest_ + level; };
-    const Polygon2 support = outline_of(parts, 1 / level, has_feet, is_low);
-    const Vec3 mass = mass_center_of(shared.robot);
+    Polygon2 support;
+    for (const Convex& part : parts)
+        if (Polygon2 foot = outline_of({&part, 1}, 1 / level, has_feet, is_low); !foot.empty()) {
+            support.insert(support.end(), foot.begin(), foot.end());
+            feet_.push_back(std::move(foot));
+        }
+    mass_ = mass_center_of(shared.robot);
     const double raised = limits.lift - lowest_;
     if (shared.options.exhaustive || limits.drop || limits.friction < least_friction ||
         limits.max_slope < least_slope || limits.lift < tolerance ||
         std::abs(raised - shared.options.max_height) < tolerance || raised < tolerance ||
         !contains(footprint_, Vec2::Zero()))
         return;
-    flatness_ = largest_flatness(depth_in(support, mass.head<2>()), mass.z() - lowest_, shared.settler().reach(),
-                                 *limits.min_stability);
+    flatness_ = largest_flatness(depth_in(convex_hull(std::move(support)), mass_.head<2>()));
+}
+
+/// Returns the largest difference between ground and plane for which the proof holds, m; 0 if there is none. `margin`:
+/// of the level robot on a plane, m.
+double LevelGround::largest_flatness(double margin) const
+{
+    constexpr double reserve = 0.5;  // of each limit, for slopes and rounding
+    const double mass_height = mass_.z() - lowest_, radius = shared_.settler().reach();
+    const double least = margin - *shared_.options.stand.min_stability - 2 * contact_gap;
+    if (!(least > 0) || !(mass_height > 0)) return 0;
+    const double by_tilt = margin * margin / (4 * mass_height), by_gap = contact_gap / (2 + 8 * radius / margin);
+    return reserve * std::min(by_tilt, by_gap);
 }
 
 void LevelGround::set_place(const Vec2& place, double radius)
@@ -220,14 +223,15 @@ std::optional<double> LevelGround::flat_ground(const Vec2& place, double radius,
         return solid.is_flat && (below == 0 || (below > flatness_ && below < head_room));
     };
     if (has_water_ || !std::all_of(solids_.begin(), solids_.end(), is_simple)) return std::nullopt;
-    return set_layer(top) && is_open_ ? std::optional(top) : std::nullopt;
+    return set_layer(top) && is_open() ? std::optional(top) : std::nullopt;
 }
 
-/// Returns whether the top of a solid is everywhere near the height of the layer, as far as the robot may reach.
-bool LevelGround::is_ground(const Solid& solid) const
+/// Returns how far the top of a solid is from the height of the layer, as far as the robot may reach, m. Infinite if it
+/// is no ground.
+double LevelGround::unevenness_of(const Solid& solid) const
 {
-    return solid.is_level &&
-           std::abs(solid.middle - height_) + std::numbers::sqrt2 * radius_ * solid.steepness <= flatness_;
+    return solid.is_level ? std::abs(solid.middle - height_) + std::numbers::sqrt2 * radius_ * solid.steepness
+                          : std::numeric_limits<double>::infinity();
 }
 
 bool LevelGround::set_layer(double height)
@@ -235,18 +239,23 @@ bool LevelGround::set_layer(double height)
     height_ = height;
     ground_.clear();
     obstacles_.clear();
-    is_open_ = true;
+    ends_.clear();
+    unevenness_ = 0;
+    is_clear_ = true;
+    has_ends_ = false;
     if (is_unsealed_) return false;
     const double top = z() + highest_ + shared_.options.stand.lift + tolerance;
     bool is_on_ground = false;
     std::size_t others = 0;
     for (const Solid& solid : solids_) {
         if (solid.high < height_ - flatness_ || solid.low > top) continue;
-        if (is_ground(solid)) {
+        if (const double uneven = unevenness_of(solid); uneven <= flatness_) {
             ground_.push_back(&solid);
+            unevenness_ = std::max(unevenness_, uneven);
             is_on_ground |= contains(solid.outline, Vec2::Zero());
         } else {
-            add_obstacle(solid.outline, solid.box);
+            is_clear_ = false;
+            add_near(obstacles_, solid.outline, solid.box);
             ++others;
         }
         if (ground_.size() + others > most) return false;
@@ -255,16 +264,16 @@ bool LevelGround::set_layer(double height)
     return is_on_ground;
 }
 
-void LevelGround::add_obstacle(const Outline& outline, const Rect& box)
+/// Adds an outline to a list, unless it is too far away at every yaw.
+void LevelGround::add_near(std::vector<Outline>& list, const Outline& outline, const Rect& box) const
 {
-    is_open_ = false;
-    if (overlap(box, {-reach_, -reach_, reach_, reach_}, 0)) obstacles_.push_back(outline);
+    if (overlap(box, {-reach_, -reach_, reach_, reach_}, 0)) list.push_back(outline);
 }
 
 /// Adds the parts of the edges of a piece of ground on whose other side there is no ground.
 void LevelGround::find_ends(const Solid& solid)
 {
-    const double half = is_open_ ? radius_ : reach_;  // what is farther away only matters to is_open()
+    const double half = is_clear_ ? radius_ : reach_;  // what is farther away only matters to is_open()
     const std::array<Vec2, 4> square{{{-half, -half}, {half, -half}, {half, half}, {-half, half}}};
     const Outline& corners = solid.outline;
     for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -285,8 +294,9 @@ void LevelGround::find_ends(const Solid& solid)
         for (const auto& [low, high] : covered_) {
             if ((low - end) * length > crack) {
                 const Vec2 from = p + end * (q - p), to = p + low * (q - p);
-                if (!are_apart(std::array{from, to}, square, 0))
-                    add_obstacle({{from, to}, 2}, box_around(std::array{from, to}));
+                if (are_apart(std::array{from, to}, square, 0)) continue;
+                has_ends_ = true;
+                add_near(ends_, {{from, to}, 2}, box_around(std::array{from, to}));
             }
             end = std::max(end, high);
         }
@@ -295,9 +305,32 @@ void LevelGround::find_ends(const Solid& solid)
 
 bool LevelGround::stands(double yaw) const
 {
-    const Polygon2 footprint = rotated(footprint_, yaw);
-    return std::all_of(obstacles_.begin(), obstacles_.end(),
-                       [&](const Outline& outline) { return are_apart(outline.span(), footprint, gap_); });
+    if (obstacles_.empty() && ends_.empty()) return true;
+    const Eigen::Matrix2d rotation = rotation_from_rpy(0, 0, yaw).topLeftCorner<2, 2>();
+    const Polygon2 footprint = rotated(footprint_, rotation);
+    const auto is_apart = [&](const Outline& outline) { return are_apart(outline.span(), footprint, gap_); };
+    if (!std::all_of(obstacles_.begin(), obstacles_.end(), is_apart)) return false;
+    return std::all_of(ends_.begin(), ends_.end(), is_apart) || stands_at_end(footprint, rotation);
+}
+
+/// Returns whether the robot stands on the ground on the near sides of all ends below its footprint. There is ground at
+/// its origin, and none of the ends lies between this and any other point there.
+bool LevelGround::stands_at_end(const Polygon2& footprint, const Eigen::Matrix2d& rotation) const
+{
+    std::vector<Polygon2> feet;
+    for (const Polygon2& foot : feet_) feet.push_back(rotated(foot, rotation));
+    for (const Outline& end : ends_) {
+        if (are_apart(end.span(), footprint, gap_)) continue;
+        const Vec2 outward = edge_normal(end[0], end[1]).normalized();
+        const double distance = outward.dot(end[0]) - gap_;
+        if (distance <= 0) return false;
+        for (Polygon2& foot : feet) foot = cut(foot, outward, distance);
+    }
+    Polygon2 support;
+    for (const Polygon2& foot : feet) support.insert(support.end(), foot.begin(), foot.end());
+    const Vec2 mass = rotation * mass_.head<2>();
+    const double flatness = largest_flatness(depth_in(convex_hull(std::move(support)), mass));
+    return flatness > 0 && unevenness_ <= flatness;
 }
 
 }  // namespace spawnfield

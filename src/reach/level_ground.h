@@ -23,6 +23,8 @@ namespace spawnfield {
 /// So if 2 e <= m^2 / (2 c), it tilts at most by 4 e / m. Then all its contacts on the plane are so near to the ground
 /// that they count for the margin (Settler), which is nearly m.
 ///
+/// Where the ground ends below the robot, the same holds for the part of its feet that has ground below it.
+///
 /// Everything else must be farther from the robot than it moves.
 class LevelGround {
 public:
@@ -48,8 +50,10 @@ public:
     /// can stand on this layer only, and is_open() holds there.
     std::optional<double> flat_ground(const Vec2& place, double radius, double head_room);
 
-    /// Returns whether there is nothing but ground within the radius, up to above the robot.
-    bool is_open() const { return is_open_; }
+    /// Returns whether there is nothing but ground and its ends within the radius, up to above the robot.
+    bool is_clear() const { return is_clear_; }
+    /// The same without ends.
+    bool is_open() const { return is_clear_ && !has_ends_; }
     /// Returns whether the robot stands at a yaw, as far as the geometry decides. False: not proven.
     bool stands(double yaw) const;
     /// Returns the height of its origin, m.
@@ -76,12 +80,16 @@ private:
     };
     Solid triangle(const std::array<Vec3, 3>& corners, bool is_terrain) const;
     Solid primitive(const Shape& shape, bool is_terrain) const;
-    bool is_ground(const Solid& solid) const;
+    double largest_flatness(double margin) const;
+    double unevenness_of(const Solid& solid) const;
     void find_ends(const Solid& solid);
-    void add_obstacle(const Outline& outline, const Rect& box);
+    void add_near(std::vector<Outline>& list, const Outline& outline, const Rect& box) const;
+    bool stands_at_end(const Polygon2& footprint, const Eigen::Matrix2d& rotation) const;
 
     const Judge::Impl& shared_;
     Polygon2 footprint_;               ///< outline of the robot, seen from above, in its frame
+    std::vector<Polygon2> feet_;       ///< lowest points of each part that has some, with 1 or more corners
+    Vec3 mass_ = Vec3::Zero();         ///< centre of mass, in the robot's frame
     double lowest_ = 0, highest_ = 0;  ///< of the robot's points, in its frame, m
     double flatness_ = 0;              ///< m; 0: nothing can be proven
     double gap_ = 0;                   ///< m; what is farther than this from the footprint does not meet the robot
@@ -91,12 +99,15 @@ private:
     std::vector<Solid> solids_;
     /// There is a face of a mesh that is filled although it has holes. It can contain the robot without any face below
     /// or beside it.
-    bool is_unsealed_ = false, is_open_ = false;
-    bool has_water_ = false;  ///< there is water within the radius
+    bool is_unsealed_ = false;
+    bool is_clear_ = false, has_ends_ = false;  ///< for is_clear() and is_open()
+    bool has_water_ = false;                    ///< there is water within the radius
     std::vector<const Solid*> ground_;
-    /// Outlines of all else that may meet the robot, and edges at which the ground ends or may end; without those that
-    /// are too far away at every yaw.
+    double unevenness_ = 0;  ///< largest height of the ground above or below the layer, m
+    /// Outlines of all else that may meet the robot, without those that are too far away at every yaw.
     std::vector<Outline> obstacles_;
+    /// Edges at which the ground ends or may end, with the ground to their left.
+    std::vector<Outline> ends_;
     std::vector<std::pair<double, double>> covered_;  ///< parts of the edge that was examined last, 0 .. 1
 };
 

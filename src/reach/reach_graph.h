@@ -83,8 +83,14 @@ struct ReachGraph::Impl {
     template <class Visit>
     void for_each_place(const Visit& visit) const
     {
-        std::size_t p = 0;
-        for (int row = 0; row < grid.rows; ++row)
+        for_each_place(0, grid.rows, visit);
+    }
+    /// The same for the rows begin .. end - 1.
+    template <class Visit>
+    void for_each_place(int begin, int end, const Visit& visit) const
+    {
+        std::size_t p = first[column_of(0, begin)];
+        for (int row = begin; row < end; ++row)
             for (int col = 0; col < grid.cols; ++col)
                 for (; p < first[column_of(col, row) + 1]; ++p) visit(p, grid.x_of(col), grid.y_of(row));
     }

@@ -97,7 +97,8 @@ void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out, Detail
             has_solids = true;
         }
         is_level = is_level && level_.set_layer(height) && is_proven(column, {at.x(), at.y(), height});
-        place.is_open = is_level && level_.is_open();
+        place.is_clear = is_level && level_.is_clear();
+        place.is_open = place.is_clear && level_.is_open();
         if (place.is_open) {
             place.level_z = level_.z();
             place.valid = HeadingSet(~0u);

@@ -39,6 +39,7 @@ struct PlaceStates {
     double ground = 0;                      ///< height of the layer, m
     HeadingSet valid = 0;                   ///< at which the robot stands
     bool is_open = false;                   ///< there is nothing but level ground, as far as any way leads
+    bool is_clear = false;                  ///< the same, but the ground may end there
     double level_z = 0;                     ///< m: of the robot's origin, if the place is open
     const PlaceDetails* details = nullptr;  ///< not if the place is open, or if only `ground` and `valid` are known
 
@@ -99,10 +100,13 @@ public:
     std::optional<std::size_t> place_ahead(const Vec2& from, const PlaceStates& place, const Vec2& to,
                                            std::span<const PlaceStates> others, int direction, int at_heading);
 
-    /// Returns whether there is nothing that the robot could meet on a way from one state to another one.
+    /// Returns whether there is nothing that the robot could meet on a way from one state to another one. Where the
+    /// ground may end between them, it must be proven that the robot is level in both.
     bool is_open(const StateAt& from, const StateAt& to) const
     {
-        return (from.place.is_open || to.place.is_open) &&
+        const auto is_level = [](const StateAt& state) { return !state.place.pose(state.heading).is_exact; };
+        return (from.place.is_open || to.place.is_open ||
+                ((from.place.is_clear || to.place.is_clear) && is_level(from) && is_level(to))) &&
                std::abs(from.place.ground - to.place.ground) <= 2 * level_.flatness();  // it may be another layer
     }
     /// Returns whether there are ways between two open places that are neighbours in a row or in a column of the grid,
