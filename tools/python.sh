@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Builds the Python package, installs it into the virtual environment build/python-package, and runs the first steps of
-# docs/python.md.
+# Builds the Python package, installs it into the virtual environment build/python-package, and runs its first steps.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

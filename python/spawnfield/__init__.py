@@ -15,15 +15,15 @@ from .audits import Audit, audit, spawn_ok
 from .batches import Batch, batch
 from .errors import ArgumentError, FileError, NothingFits, NotValid, SpawnfieldError
 from .options import options
-from .pool import Pool
-from .results import VALID, VERDICTS, Fleet, Pairs, Picture, Raster, Spawns, Verdicts
+from .pool import Draw, Pool
+from .results import VALID, VERDICTS, Fleet, Pairs, Picture, Raster, Spawns, Table, Verdicts
 from .robot import Robot
 from .scene import Scene
 from .world import World, bake, info, open
 
 __version__ = _version()
 __all__ = [
-    "VALID", "VERDICTS", "ArgumentError", "Audit", "Batch", "FileError", "Fleet", "NotValid", "NothingFits", "Pairs",
-    "Picture", "Pool", "Raster", "Robot", "Scene", "SpawnfieldError", "Spawns", "Verdicts", "World", "audit", "bake",
-    "batch", "info", "open", "options", "spawn_ok",
+    "VALID", "VERDICTS", "ArgumentError", "Audit", "Batch", "Draw", "FileError", "Fleet", "NotValid", "NothingFits",
+    "Pairs", "Picture", "Pool", "Raster", "Robot", "Scene", "SpawnfieldError", "Spawns", "Table", "Verdicts", "World",
+    "audit", "bake", "batch", "info", "open", "options", "spawn_ok",
 ]  # fmt: skip

@@ -41,7 +41,7 @@ def audit(
     scene: Any, robot: Robot | File | list[Robot | File], *, poses: Any = None,
     rules: File | Mapping[str, Any] | None = None, progress: bool | None = None, **options: Any,
 ) -> Audit:  # fmt: skip
-    """Reports on a world and its faults, as ``spawnfield audit``.
+    """Reports on a world and its faults, as ``spawnfield audit`` (docs/audit.md).
 
     Args:
         scene: name of a scene file or map folder; a World; or a scene in memory, as for `bake`.
@@ -52,7 +52,11 @@ def audit(
         **options: those of the program; with ``out``, a file is written in the ``format`` (default here: "json").
 
     Returns:
-        The report. A broken rule is no exception; see ``Audit.ok``.
+        The report. A broken rule is not an exception; see ``Audit.ok``.
+
+    Raises:
+        ArgumentError: an option is wrong.
+        FileError: a file is missing or wrong, unless the option ``allow_missing`` reports it.
     """
     inputs: dict[str, Any] = {}
     in_memory = None if isinstance(scene, World) else scene_of(scene)

@@ -9,7 +9,7 @@ import inspect
 import io
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,13 +23,14 @@ Row = dict[str, Any]
 _CRASHED = "the process ended while it worked on this world: it crashed, or was killed"
 
 
-class Batch(Sequence):
+class Batch(Sequence[Row]):
     """The rows of `batch`, in the order of the scenes.
 
-    Each row has ``scene``; ``error``, "" if there is none; and what the function returned.
+    It is a sequence of dictionaries. Each row has ``scene``, the name; ``error``, "" if there is none; and what the
+    function returned.
 
     Attributes:
-        rows: a list of dictionaries.
+        rows: the rows as a list.
         done_before: number of rows that were taken from the store.
     """
 
@@ -52,7 +53,7 @@ class Batch(Sequence):
         return [row for row in self.rows if row["error"]]
 
     def to_pandas(self) -> Any:
-        """Returns a pandas.DataFrame."""
+        """Returns a pandas.DataFrame. Needs pandas."""
         import pandas as pd
 
         return pd.DataFrame(self.rows)
@@ -79,7 +80,8 @@ def batch(
     workers: int | None = None, store: File | None = None, arguments: Mapping[str, Any] | None = None,
     depends: Iterable[File] = (), progress: bool | None = None,
 ) -> Batch:  # fmt: skip
-    """Calls a function for each of many worlds, on Dask. Needs ``dask[distributed]``, except with "inline".
+    """Calls a function for each of many worlds, on Dask. Needs ``dask[distributed]``, except with
+    ``scheduler="inline"``.
 
     A world for which the function raises an exception, or whose process crashes, becomes a row with an error, and the
     others go on. A world whose process was killed is tried again.
@@ -101,6 +103,9 @@ def batch(
 
     Returns:
         The rows.
+
+    Raises:
+        ArgumentError: a scene is named twice, or `arguments` are not numbers and texts.
     """
     names = [os.fspath(scene) for scene in scenes]
     if len(set(names)) != len(names):
@@ -148,7 +153,7 @@ def _call(function: Callable[..., Mapping[str, Any]], name: str, arguments: Mapp
 def _results(
     function: Callable[..., Mapping[str, Any]], names: list[str], arguments: Mapping[str, Any], scheduler: Any,
     workers: int | None,
-) -> Iterator[Result]:  # fmt: skip
+) -> Generator[Result, None, None]:  # fmt: skip
     if not names:
         return
     if scheduler == "inline":
@@ -178,7 +183,9 @@ def _results(
             yield from _on_dask(client, function, [name], arguments)
 
 
-def _on_dask(client: Any, function: Any, names: list[str], arguments: Mapping[str, Any]) -> Iterator[Result]:
+def _on_dask(
+    client: Any, function: Any, names: list[str], arguments: Mapping[str, Any]
+) -> Generator[Result, None, None]:
     from distributed import KilledWorker, as_completed
 
     name_of = {}

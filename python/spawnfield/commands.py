@@ -160,7 +160,7 @@ def run(
     bar = progress_bar(progress)
     try:
         ended = _core.run(
-            [command, *arguments(command, options), *words], dict(inputs or {}), wants_text, on_message, bar
+            [command, *words, *arguments(command, options)], dict(inputs or {}), wants_text, on_message, bar
         )
     except (_core.ArgumentError, _core.FileError, _core.OutputError, _core.NothingFits) as error:
         raise translated(error) from None

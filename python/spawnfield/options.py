@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from . import _core
+from .errors import ArgumentError
 
 
 def options(command: str) -> str:
     """Returns the options of a function as text: their names in Python, and what they mean.
 
     Args:
-        command: "bake", "sample", "search", "check", "raster", "heatmap", "export", "experiment" or "info".
+        command: "bake", "sample", "search", "check", "raster", "heatmap", "export", "experiment", "audit" or "info".
+
+    Raises:
+        ArgumentError: there is no such function.
     """
     known = _core.commands()
     if command not in known:
-        from .errors import ArgumentError
-
         raise ArgumentError(f"there is no function {command}; there are {', '.join(known)}")
     groups: dict[str, list[str]] = {}
     for option in known[command]["options"]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import threading
+import weakref
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -17,7 +19,7 @@ _CHUNK = 1 << 15  # spawns that are made at once, so that the first draw does no
 
 
 class Pool:
-    """Verified spawns, or pairs of a start and a goal, that are kept as arrays.
+    """Verified spawns, or pairs of a start and a goal, that are kept as arrays. ``len()`` is the number of rows.
 
     They are made in the background. A draw waits only until the rows that it needs are there. Draws depend on nothing
     but the seed and the order of the calls. No row is drawn twice until all have been drawn; then all rows are drawn
@@ -30,15 +32,11 @@ class Pool:
         seed: of the spawns and of the draws.
         pairs: the rows are pairs with columns ``start`` and ``goal`` in place of ``pose``.
         background: False: the constructor returns when all spawns are there.
-        **options: those of ``World.sample``, for example ``yaw="random", columns="clearance"``.
+        **options: those of ``World.sample``, for example ``columns="clearance"``. The default of ``yaw`` is "random".
 
     Raises:
         ArgumentError: an argument is wrong, or a world has no valid pose. Faults of the background are raised by the
             next call that needs its rows.
-
-    Attributes:
-        columns: all rows that are there so far; the columns of Spawns or Pairs, and ``world``, the index of the world.
-        epoch: how often all rows of each world have been drawn, (worlds,) int64.
     """
 
     def __init__(
@@ -59,13 +57,21 @@ class Pool:
         self._is_closed = False
         self._tensors: dict[Any, Any] = {}
         work = list(zip(self._decks, worlds, robots))
-        threading.Thread(target=self._make, args=(work, size, pairs, options), daemon=True).start()
+        self._thread = threading.Thread(target=self._make, args=(work, size, pairs, options), daemon=True)
+        self._thread.start()
+        _filling.add(self)
         if not background:
             self.wait()
 
     @classmethod
-    def from_columns(cls, columns: Mapping[str, np.ndarray], *, seed: int = 0) -> "Pool":
-        """Returns a pool of given rows, for example those of `save`; a column ``world`` is optional."""
+    def from_columns(cls, columns: Mapping[str, np.ndarray], *, seed: int = 0) -> Pool:
+        """Returns a pool of given rows.
+
+        Args:
+            columns: arrays of equal length, as of `columns`: ``pose``, or ``start`` and ``goal``, of shape (n, 7), and
+                any others. ``world`` is optional.
+            seed: of the draws.
+        """
         pool = cls.__new__(cls)
         pool._pose = "pose" if "pose" in columns else "start"
         world = np.asarray(columns.get("world", np.zeros(len(columns[pool._pose]), np.int64)))
@@ -87,16 +93,18 @@ class Pool:
 
     @property
     def epoch(self) -> np.ndarray:
+        """(worlds,) int64: how often all rows of each world have been drawn."""
         return np.array([deck.epoch for deck in self._decks])
 
     @property
     def columns(self) -> dict[str, np.ndarray]:
+        """All rows that are there so far: the columns of Spawns or Pairs, and ``world``, the index of the world."""
         with self._changed:
             parts = [{**deck.rows(), "world": np.full(deck.made, k)} for k, deck in enumerate(self._decks)]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
-    def wait(self) -> "Pool":
-        """Waits until all rows are there."""
+    def wait(self) -> Pool:
+        """Waits until all rows are there. Returns the pool."""
         with self._changed:
             while not self._failure and not all(deck.is_complete for deck in self._decks):
                 self._changed.wait(0.1)  # so that Ctrl-C is noticed
@@ -104,7 +112,8 @@ class Pool:
         return self
 
     def close(self) -> None:
-        """Ends the work in the background; the pool keeps the rows that it has."""
+        """Ends the work in the background, after the spawns that are being made now (at most 32,768). The pool keeps
+        the rows that it has. When Python ends, it closes all pools, and waits for these spawns."""
         self._is_closed = True
 
     def weigh(self, weights: str | np.ndarray | Callable[[dict[str, np.ndarray]], np.ndarray] | None) -> None:
@@ -117,6 +126,9 @@ class Pool:
         Args:
             weights: the name of a column; an array of numbers >= 0, one for each row of `columns`; a function that
                 makes it of `columns`; or None for equal weights.
+
+        Raises:
+            ArgumentError: the weights have another length, or one of them is negative or NaN.
         """
         self.wait()
         if weights is not None and not isinstance(weights, np.ndarray):
@@ -130,13 +142,14 @@ class Pool:
 
     def draw(
         self, which: int | Any, out: Any = None, *, world: Any = None, min_distance: float = 0.0
-    ) -> "Draw":  # fmt: skip
+    ) -> Draw:  # fmt: skip
         """Draws rows.
 
         Args:
             which: how many; or a mask, (environments,) bool, of the environments that reset.
             out: (environments, 7) array or torch tensor on any device, in which the rows of the mask get their pose:
-                x, y, z and a quaternion x, y, z, w. With a tensor, the pool keeps a copy of the poses on its device.
+                x, y, z (m) and a quaternion x, y, z, w. With a tensor, the pool keeps a copy of the poses on its
+                device.
             world: index of the world; with a mask, one for each environment; otherwise one for each row. Default: 0.
             min_distance: m between any two poses of this draw in the same world. Rows that are too near are not lost;
                 they stay for later draws.
@@ -181,12 +194,12 @@ class Pool:
 
         self.wait()
         data = BytesIO()
-        np.savez(data, **self.columns)
+        np.savez(data, **self.columns)  # type: ignore[arg-type]
         write_bytes(data.getvalue(), file)
 
     @classmethod
-    def load(cls, file: str | os.PathLike[str], *, seed: int = 0) -> "Pool":
-        """Reads a file of `save`. Draws begin anew."""
+    def load(cls, file: str | os.PathLike[str], *, seed: int = 0) -> Pool:
+        """Returns the pool of a file that `save` has written. Draws begin anew, with another `seed` if it is given."""
         with np.load(file, allow_pickle=False) as columns:
             return cls.from_columns(dict(columns), seed=seed)
 
@@ -204,7 +217,7 @@ class Pool:
             return self._take(k, count, min_distance)  # the world may have fewer rows than it was asked for
         return deck.take(count) if min_distance <= 0 else deck.take_apart(count, min_distance, self._pose)
 
-    def _fill(self, out: Any, rows: np.ndarray, drawn: "Draw") -> None:
+    def _fill(self, out: Any, rows: np.ndarray | None, drawn: "Draw") -> None:
         if not hasattr(out, "device") or isinstance(out, np.ndarray):
             out[rows] = drawn.column(self._pose)
             return
@@ -245,8 +258,21 @@ class Pool:
                 self._changed.notify_all()
 
 
+_filling: weakref.WeakSet[Pool] = weakref.WeakSet()
+
+
+@atexit.register
+def _close_all() -> None:
+    """A thread that runs a command while Python is taken down would abort the process, so all pools end before."""
+    pools = list(_filling)
+    for pool in pools:
+        pool.close()
+    for pool in pools:
+        pool._thread.join()
+
+
 class Draw:
-    """The rows of a draw. Each column is an attribute, for example ``draw.pose``; they are copied when they are read.
+    """The rows of ``Pool.draw``. Each column is an attribute, for example ``draw.pose``; it is copied when it is read.
 
     Attributes:
         world: (n,) int64, index of the world.
@@ -262,7 +288,7 @@ class Draw:
         return len(self.index)
 
     def column(self, name: str) -> np.ndarray:
-        """Returns a column of these rows."""
+        """Returns a column of these rows, for example "pose"."""
         if len(self._decks) == 1:
             return self._decks[0].buffers[name][self.index]
         first = self._decks[0].buffers[name]

@@ -1,11 +1,17 @@
 """What the queries return: values as numpy arrays, and the same files as the command line program writes.
 
-All lengths are in metres and angles in radians. The frame is that of the world: x forward, y left, z up (REP-103).
+All lengths are in metres and angles in radians. The frame is that of the world: x forward, y left, z up (REP-103). A
+pose is the position of the robot's origin, x, y, z, and its rotation as a quaternion x, y, z, w.
 """
 
 from __future__ import annotations
 
+import io
 import os
+import shutil
+import subprocess
+import sys
+import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,22 +19,26 @@ from typing import Any
 import numpy as np
 
 from . import _core
+from .errors import ArgumentError
 
-#: Verdicts by their code, which is their number in files.
+#: The name of each verdict by its code, as in files and in arrays of verdicts; see docs/verdicts.md.
 VERDICTS = {
     0: "outside", 1: "aerial", 2: "off_terrain", 3: "submerged", 4: "collision", 5: "steep", 6: "unstable",
     7: "valid", 8: "obstructed", 9: "unreachable",
 }  # fmt: skip
+#: The code of the verdict "valid".
 VALID = 7
 
 
 class Table:
-    """Columns of equal length, one row for each pose.
+    """Columns of equal length, one row for each pose: the base of `Spawns`, `Pairs`,
+    `Fleet`, `Verdicts` and `Raster`.
 
-    Each column is an attribute, for example ``spawns.yaw``.
+    Each column is an attribute, for example ``spawns.yaw``. ``len()`` is the number of rows. The arrays are made once
+    and stay when the table is deleted.
 
     Attributes:
-        columns: all columns by their names.
+        columns: dictionary of all columns by their names.
         summary: the summary of the query, as of ``--summary``.
     """
 
@@ -52,8 +62,8 @@ class Table:
         return f"{type(self).__name__}({len(self)}: {', '.join(self.columns)})"
 
     def to_pandas(self) -> Any:
-        """Returns a pandas.DataFrame; poses become the columns x, y, z, qx, qy, qz, qw, with the name as a prefix
-        unless the name is ``pose``."""
+        """Returns a pandas.DataFrame. Needs pandas. Poses become the columns x, y, z, qx, qy, qz, qw, with the name as
+        a prefix unless the name is ``pose``."""
         import pandas as pd
 
         frame = {}
@@ -84,11 +94,14 @@ class Spawns(Table):
     """Valid poses of ``World.sample`` and ``World.search``, in the order in which they were found.
 
     Attributes:
-        pose: (n, 7) float64: x, y, z in m and a quaternion x, y, z, w, of the robot's origin in the world.
+        pose: (n, 7) float64: x, y, z in m and a quaternion x, y, z, w. Settled robots are raised by the option
+            ``lift`` (0.02 m).
         roll, pitch, yaw: (n,) float64, rad, as in URDF's rpy.
         tilt, margin: (n,) float64, rad and m, only of settled robots; see docs/standing.md.
-        clearance, head_room, …: (n,) float64, those of the option ``columns``.
-        counts: number of judged positions for each verdict.
+        clearance, head_room, …: (n,) float64, those of the option ``columns``; see docs/places.md. ``clearance`` and
+            ``way`` (m) are also columns of ``yaw="best:K:clearance"`` and ``yaw="along"``.
+        counts: number of judged positions for each verdict, by its name.
+        draws: number of drawn positions, also those that were not judged.
         is_full: fewer spawns than wanted were found, and it is proven that no other one fits.
         undecided_area: m2 in which another one may fit; NaN if nothing is proven.
     """
@@ -122,8 +135,8 @@ class Pairs(Table):
 
     Attributes:
         start, goal: (n, 7) float64: x, y, z in m and a quaternion x, y, z, w.
-        path_length, straight, detour: (n,) float64: m, m, and their ratio.
-        island: (n,) int64, as in ``info(islands=True)``.
+        path_length, straight, detour: (n,) float64: length of the path, m; of the straight line, m; and their ratio.
+        island: (n,) int64, its number in ``World.info(robot, islands=True)``, 1 for the largest.
     """
 
     def __init__(self, found: _core.FoundPairs, summary: Mapping[str, Any]) -> None:
@@ -132,18 +145,20 @@ class Pairs(Table):
 
     @property
     def paths(self) -> list[np.ndarray]:
-        """For each pair the poses of its path, (k, 7) float64. Empty arrays unless the option ``path`` was given."""
+        """For each pair the poses of its path, (k, 7) float64, as ``start``. Empty arrays unless the option ``path``
+        was given."""
         return self._found.paths()
 
 
 class Fleet(Table):
-    """Robots of ``World.sample(fleet=FILE)``.
+    """Robots of ``World.sample(fleet=FILE)`` or ``World.sample(robot, fill=True)``, which do not overlap.
 
     Attributes:
         pose: (n, 7) float64: x, y, z in m and a quaternion x, y, z, w.
+        roll, pitch, yaw, tilt, margin: (n,) float64, as of Spawns.
         kind: (n,) int64, index in `kinds`.
-        names: the names of the robots.
-        kinds: the names of the kinds.
+        names: the names of the robots, n texts.
+        kinds: the names of the kinds of robots.
     """
 
     def __init__(self, found: _core.FoundFleet, summary: Mapping[str, Any]) -> None:
@@ -156,10 +171,13 @@ class Verdicts(Table):
     """The verdicts of ``World.check``, one for each pose.
 
     Attributes:
-        code: (n,) uint8, see VERDICTS.
-        ground: (n,) float64, height of the ground, m; NaN: there is none.
+        code: (n,) uint8, see `VERDICTS`.
+        ground: (n,) float64, height of the ground below the pose, m; NaN: there is none.
+        hit_part: (n,) int64, index of the part of the map that the robot meets, whose name `hit` has; -1: none; -2: a
+            voxel of the map.
         settled: (n, 7) float64, only of settled robots: the pose at rest, not raised; NaN: it has no room.
-        tilt, margin, tip_over, belly: (n,) float64, only of settled robots; rad, m, rad, m; see docs/standing.md.
+        tilt, tip_over: (n,) float64, rad, only of settled robots; see docs/standing.md.
+        margin, belly: (n,) float64, m, only of settled robots.
         repair, repair_distance: (n, 7) and (n,) float64, only with the option ``repair``: the nearest valid pose, and
             how far it is, m; NaN: the pose is valid, or there is none.
     """
@@ -170,7 +188,7 @@ class Verdicts(Table):
 
     @property
     def valid(self) -> np.ndarray:
-        """(n,) bool."""
+        """(n,) bool: whether the verdict is "valid"."""
         return self.code == VALID
 
     @property
@@ -191,7 +209,15 @@ class Verdicts(Table):
         return [self._found.reason(i) for i in range(len(self))]
 
     def contacts(self, index: int) -> dict[str, np.ndarray]:
-        """Returns where a settled robot touches the ground: `point` and `normal`, both of shape (k, 3), m."""
+        """Returns where the robot touches the ground at the settled pose of a row.
+
+        Args:
+            index: of the row.
+
+        Returns:
+            A dictionary of ``point``, (k, 3) float64, m, and ``normal``, (k, 3) float64, of the ground at these points.
+            k is 0 if robots were not let down (option ``settle``), or if there is no pose at rest.
+        """
         return self._found.contacts(range(len(self))[index])
 
     def to_csv(self, file: str | os.PathLike[str] | None = None) -> bytes:
@@ -204,12 +230,13 @@ class Raster(Table):
 
     Attributes:
         pose: (n, 7) float64: x, y, z in m and a quaternion x, y, z, w.
-        verdict: (n,) uint8, see VERDICTS.
+        verdict: (n,) uint8, see `VERDICTS`.
         layer: (n,) int32: the layer of ground, 0 is the highest; -1: the ground is not a layer.
         row, col: (n,) int32, place in the grid: y = y0 + row * step, x = x0 + col * step.
-        layer_height, roll, pitch, yaw, tilt, margin, tip_over, belly: (n,) float64, only of settled robots.
-        grid: x0, y0, z0, step, step_z (m), cols, rows, heights, dims.
-        counts: number of poses for each verdict.
+        roll, pitch, yaw, tilt, tip_over: (n,) float64, rad, only of settled robots; see docs/standing.md.
+        layer_height, margin, belly: (n,) float64, m, only of settled robots.
+        grid: dictionary of x0, y0, z0, step, step_z (m), cols, rows, heights, dims.
+        counts: number of poses for each verdict, by its name; of 3D rasters also of those without a row.
     """
 
     def __init__(self, found: _core.FoundRaster, summary: Mapping[str, Any], threads: int) -> None:
@@ -232,13 +259,13 @@ class Raster(Table):
         """Returns a column as an image.
 
         Args:
-            name: of the column; "z" for the height of the poses, m.
+            name: of the column; "z" for the height of the robot's origin, m.
             fill: the value of places without a pose: by default NaN, or 255 for verdicts.
 
         Returns:
-            (levels, rows, cols), y ascending along the rows. For 2D rasters, level 0 has the highest pose of each
-            column. For 3D rasters, levels are heights; poses that ``snap`` put between two of them have the nearest
-            one, and free poses high above the ground have no row.
+            (levels, rows, cols), uint8 for verdicts, float64 for other columns; y ascends along the rows. For 2D
+            rasters, level 0 has the highest pose of each column. For 3D rasters, levels are heights; poses that
+            ``snap`` put between two of them have the nearest one, and free poses high above the ground have no row.
         """
         values = self.pose[:, 2] if name == "z" else self.columns[name]
         if fill is None:
@@ -277,22 +304,27 @@ class Raster(Table):
         return xr.Dataset(data, coordinates, {"frame": "x forward, y left, z up (REP-103)"})
 
     def to_csv(self, file: str | os.PathLike[str] | None = None, write_aerial: bool = False) -> bytes:
-        """Returns the CSV file that ``spawnfield raster`` writes, and writes it to `file` if that is given."""
+        """Returns the CSV file that ``spawnfield raster`` writes, and writes it to `file` if that is given.
+        `write_aerial`: also rows of ``aerial`` poses of 3D rasters."""
         return write_bytes(self._found.csv(write_aerial, self._threads), file)
 
 
 class Picture:
-    """A picture. Notebooks show it.
+    """A picture. A notebook shows it if it is the last value of a cell.
 
     Attributes:
         data: the bytes of the file.
         format: "png", "svg" or "pdf".
+        summary: the summary of the query, as of ``--summary``.
     """
 
     def __init__(self, data: bytes, format: str, summary: Mapping[str, Any]) -> None:
         self.data = data
         self.format = format
         self.summary = dict(summary)
+
+    def __repr__(self) -> str:
+        return f"Picture({self.format}, {len(self.data)} bytes)"
 
     def _repr_png_(self) -> bytes | None:
         return self.data if self.format == "png" else None
@@ -301,35 +333,61 @@ class Picture:
         return self.data.decode() if self.format == "svg" else None
 
     def save(self, file: str | os.PathLike[str]) -> None:
-        """Writes the file, completely or not at all."""
+        """Writes the file, completely or not at all. Raises OSError."""
         write_bytes(self.data, file)
 
-    def show(self, ax: Any = None) -> Any:
-        """Shows the picture in a notebook, or draws it on a matplotlib axis if one is given. Outside of notebooks, it
-        opens a window of matplotlib. Returns the axis, if there is one."""
-        if ax is None and _is_notebook():
+    def show(self) -> None:
+        """Shows the picture: in a notebook, or with the program that the desktop has for such files. Without a desktop,
+        prints the name of a temporary file with the picture."""
+        if _is_notebook() and self.format != "pdf":  # notebooks do not show PDF
             from IPython.display import display
 
             display(self)
-            return None
-        import matplotlib.image
-        import matplotlib.pyplot as plt
-        from io import BytesIO
+            return
+        handle, name = tempfile.mkstemp(f".{self.format}", "spawnfield-")
+        with os.fdopen(handle, "wb") as file:
+            file.write(self.data)
+        if not _opens_on_desktop(name):
+            print(f"the picture is in {name}")
 
-        is_own = ax is None
-        if is_own:
-            ax = plt.figure(layout="constrained").add_subplot()
-        ax.imshow(matplotlib.image.imread(BytesIO(self.data), format=self.format))
+    def axis(self, ax: Any = None) -> Any:
+        """Draws the picture on an axis of matplotlib. Needs matplotlib.
+
+        Args:
+            ax: the axis; None: that of a new figure, which ``matplotlib.pyplot.show()`` shows.
+
+        Returns:
+            The axis.
+
+        Raises:
+            ArgumentError: the picture is not a PNG.
+        """
+        if self.format != "png":
+            raise ArgumentError(f'--format is "{self.format}", needs png for an axis')
+        import matplotlib.image
+        import matplotlib.pyplot
+
+        if ax is None:
+            ax = matplotlib.pyplot.figure(layout="constrained").add_subplot()
+        ax.imshow(matplotlib.image.imread(io.BytesIO(self.data), format="png"))
         ax.set_axis_off()
-        if is_own:
-            plt.show()
         return ax
 
 
 def _is_notebook() -> bool:
-    try:
-        from IPython import get_ipython
-    except ImportError:
+    """Returns whether a notebook runs this: it has imported IPython, and its shell has a kernel."""
+    ipython = sys.modules.get("IPython")
+    return ipython is not None and hasattr(ipython.get_ipython(), "kernel")
+
+
+def _opens_on_desktop(file: str) -> bool:
+    """Opens a file with the program that the desktop has for it. Returns whether there is a desktop that can."""
+    has_screen = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    opener = shutil.which("xdg-open")
+    if not has_screen or opener is None:
         return False
-    shell = get_ipython()
-    return shell is not None and shell.__class__.__name__ == "ZMQInteractiveShell"
+    subprocess.Popen(
+        [opener, file], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )  # fmt: skip
+    return True

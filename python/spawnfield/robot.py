@@ -15,7 +15,7 @@ class Robot:
     """A robot, read from a file once and used in any number of queries.
 
     Args:
-        file: robot.yaml, .urdf, an SDF model, or "box:LX,LY,LZ" with side lengths in m.
+        file: robot.yaml, .urdf, an SDF model, or "box:LX,LY,LZ" with side lengths in m; see docs/robots.md.
         model_path: folder, or a list of folders, that contain models or ROS packages.
         joints: positions of joints of a URDF or SDF model, rad or m; all others are at 0.
         mesh_parts: each mesh of the robot is split into at most this many convex parts; 1: its convex hull.
@@ -27,8 +27,8 @@ class Robot:
     Attributes:
         name: of the robot.
         file: from which it was read.
-        lower, upper: corners of the box around it in its own frame, m.
-        mass_center: in its own frame, m.
+        lower, upper: (x, y, z) of the corners of the box around it in its own frame, m.
+        mass_center: (x, y, z) of its centre of mass in its own frame, m.
     """
 
     def __init__(

@@ -16,7 +16,11 @@ LABELS = ("terrain", "obstacle", "water")
 class Scene:
     """A world of labelled parts, in metres, z up. `bake` makes a map of it.
 
-    Labels are "terrain" (robots may stand on it), "obstacle" and "water".
+    Labels are "terrain" (robots may stand on it), "obstacle" and "water". All ``add_…`` methods return the scene
+    itself, so calls can be chained. They raise `ArgumentError` for wrong labels, shapes and numbers.
+
+    Args:
+        name: of the scene.
     """
 
     def __init__(self, name: str = "scene") -> None:
@@ -25,6 +29,7 @@ class Scene:
 
     @property
     def part_names(self) -> list[str]:
+        """The names of the parts, in the order in which they were added."""
         return self._core.part_names()
 
     def add_mesh(
@@ -34,7 +39,7 @@ class Scene:
         label: str | Sequence[str] = "obstacle",
         name: str = "mesh",
         solid: str = "auto",
-    ) -> "Scene":
+    ) -> Scene:
         """Adds a mesh.
 
         Args:
@@ -45,9 +50,6 @@ class Scene:
             name: of the part, for messages and for rules such as ``near``.
             solid: "auto": the inside of watertight pieces is solid; "yes": of all pieces; "no": faces have no
                 thickness.
-
-        Returns:
-            The scene itself.
         """
         vertices = np.ascontiguousarray(_host_array(vertices), np.float64)
         faces = np.ascontiguousarray(_host_array(faces), np.int64)
@@ -63,8 +65,14 @@ class Scene:
             raise ArgumentError(f"--label has {unknown[0]!r}, needs terrain, obstacle, water or ignore")
         return self
 
-    def add_trimesh(self, mesh: Any, label: str | Sequence[str] = "obstacle", name: str | None = None) -> "Scene":
-        """Adds a trimesh.Trimesh, or each mesh of a trimesh.Scene with the name of its node."""
+    def add_trimesh(self, mesh: Any, label: str | Sequence[str] = "obstacle", name: str | None = None) -> Scene:
+        """Adds a trimesh.Trimesh, or each mesh of a trimesh.Scene with the name of its node.
+
+        Args:
+            mesh: the mesh or scene, m, z up.
+            label: one label, or one for each face.
+            name: of the part of a Trimesh; default: "mesh".
+        """
         if not hasattr(mesh, "geometry"):
             return self.add_mesh(mesh.vertices, mesh.faces, label, name or "mesh")
         for node in mesh.graph.nodes_geometry:
@@ -76,7 +84,7 @@ class Scene:
 
     def add_heights(
         self, heights: Any, transform: Any = None, label: str = "terrain", name: str = "heights"
-    ) -> "Scene":
+    ) -> Scene:
         """Adds a surface through a grid of heights.
 
         Args:
@@ -84,11 +92,8 @@ class Scene:
             transform: (a, b, c, d, e, f) of the affine transform from the corner of a cell, (col, row), to the world,
                 x = a col + b row + c, y = d col + e row + f, as rasterio's ``dataset.transform``. Heights are those at
                 the centres of the cells. Default: x = col, y = -row.
-            label: its label.
-            name: its name.
-
-        Returns:
-            The scene itself.
+            label: of the surface.
+            name: of the part.
         """
         grid = np.asarray(_host_array(heights), np.float64)
         if grid.ndim != 2 or min(grid.shape) < 2:
@@ -112,21 +117,44 @@ class Scene:
                          np.ascontiguousarray(faces.reshape(-1, 3), np.int64), "no")  # fmt: skip
 
     def add_box(self, size: Sequence[float], xyz: Sequence[float] = (0, 0, 0), yaw: float = 0,
-                label: str = "obstacle", name: str = "box") -> "Scene":  # fmt: skip
-        """Adds a solid box with these side lengths (m) around `xyz`, turned by `yaw` (rad)."""
+                label: str = "obstacle", name: str = "box") -> Scene:  # fmt: skip
+        """Adds a solid box.
+
+        Args:
+            size: side lengths along x, y and z, m.
+            xyz: its centre, m.
+            yaw: rotation about the vertical, rad, counterclockwise seen from above.
+            label: its label.
+            name: of the part.
+        """
         return self._add_solid(name, label, "box", size, xyz, yaw)
 
     def add_cylinder(self, radius: float, length: float, xyz: Sequence[float] = (0, 0, 0),
-                     label: str = "obstacle", name: str = "cylinder") -> "Scene":  # fmt: skip
-        """Adds a solid upright cylinder around `xyz`; m."""
+                     label: str = "obstacle", name: str = "cylinder") -> Scene:  # fmt: skip
+        """Adds a solid upright cylinder.
+
+        Args:
+            radius: m.
+            length: along z, m.
+            xyz: its centre, m.
+            label: its label.
+            name: of the part.
+        """
         return self._add_solid(name, label, "cylinder", (radius, length, 0), xyz, 0)
 
     def add_sphere(self, radius: float, xyz: Sequence[float] = (0, 0, 0), label: str = "obstacle",
-                   name: str = "sphere") -> "Scene":  # fmt: skip
-        """Adds a solid sphere around `xyz`; m."""
+                   name: str = "sphere") -> Scene:  # fmt: skip
+        """Adds a solid sphere.
+
+        Args:
+            radius: m.
+            xyz: its centre, m.
+            label: its label.
+            name: of the part.
+        """
         return self._add_solid(name, label, "sphere", (radius, 0, 0), xyz, 0)
 
-    def _add(self, name: str, label: str, vertices: np.ndarray, faces: np.ndarray, solid: str) -> "Scene":
+    def _add(self, name: str, label: str, vertices: np.ndarray, faces: np.ndarray, solid: str) -> Scene:
         try:
             self._core.add_triangles(name, label, vertices, faces, solid)
         except _core.ArgumentError as error:
@@ -134,10 +162,11 @@ class Scene:
         return self
 
     def _add_solid(self, name: str, label: str, kind: str, size: Sequence[float], xyz: Sequence[float],
-                   yaw: float) -> "Scene":  # fmt: skip
+                   yaw: float) -> Scene:  # fmt: skip
         pose = np.array([[*xyz, yaw]], np.float64)
         try:
-            self._core.add_solid(name, label, kind, *map(float, size), pose)
+            a, b, c = map(float, size)
+            self._core.add_solid(name, label, kind, a, b, c, pose)
         except _core.ArgumentError as error:
             raise translated(error) from None
         return self

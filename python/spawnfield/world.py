@@ -7,7 +7,7 @@ import os
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -26,16 +26,16 @@ _SCENE_OPTIONS = ("label", "auto_label", "up", "scale", "heightmap", "unknown", 
 _ROBOT_OPTIONS = ("joints", "mesh_parts")
 
 
-def bake(scene: Any, out: File | None = None, *, progress: bool | None = None, **options: Any) -> "World":
-    """Makes a map from a scene, as ``spawnfield bake``.
+def bake(scene: Any, out: File | None = None, *, progress: bool | None = None, **options: Any) -> World:
+    """Makes a map from a scene, as ``spawnfield bake`` (docs/input-files.md).
 
     Args:
         scene: name of a scene file: scene.yaml, a Gazebo world or model, a mesh, an OctoMap, an elevation model or a
-            2D map of nav2. Or something in memory: a Scene, a trimesh.Trimesh or trimesh.Scene, or a pair of vertices
+            2D map of nav2. Or something in memory: a `Scene`, a trimesh.Trimesh or trimesh.Scene, or a pair of vertices
             (n, 3) and faces (m, 3); m, z up.
-        out: folder of the map; an older map there is replaced. None: a temporary folder that is deleted with the world.
+        out: folder of the map; an older map there is replaced. None: a temporary folder that is deleted with the World.
         progress: True: show progress with tqdm; None: only on a terminal, if tqdm is installed.
-        **options: those of the program, with "_" in place of "-"; see ``spawnfield.options("bake")``.
+        **options: for example ``model_path="models", label="terrain"``; see ``spawnfield.options("bake")``.
 
     Returns:
         The world with this map.
@@ -46,36 +46,51 @@ def bake(scene: Any, out: File | None = None, *, progress: bool | None = None, *
     """
     inputs: dict[str, Any] = {}
     in_memory = scene_of(scene)
-    name = "scene in memory" if in_memory else os.fspath(scene)
+    name: str = "scene in memory" if in_memory else os.fspath(scene)
     if in_memory:
         if given := [option for option in _SCENE_OPTIONS if options.get(option) is not None]:
             raise ArgumentError(
                 f"--{given[0].replace('_', '-')} is for scene files; give labels and lengths to the Scene"
             )
         inputs[name] = in_memory._core
-    temporary = tempfile.TemporaryDirectory(prefix="spawnfield-") if out is None else None
-    folder = str(Path(temporary.name) / "map") if temporary else os.fspath(out)
+    temporary = None
+    if out is None:
+        temporary = tempfile.TemporaryDirectory(prefix="spawnfield-")
+        out = Path(temporary.name) / "map"
+    folder = os.fspath(out)
     outcome = commands.run("bake", [name, f"--out={folder}"], options, inputs, progress=progress)
     return World(folder, summary=outcome.summary, _temporary=temporary)
 
 
-def open(folder: File) -> "World":
-    """Opens a map that `bake` or the program has made. Raises FileError."""
+def open(folder: File) -> World:
+    """Opens a map that `bake` or the program has made.
+
+    Args:
+        folder: of the map.
+
+    Raises:
+        FileError: the folder is missing or is not a map.
+    """
     return World(folder)
 
 
 class World:
-    """A map, opened for any number of queries. Threads may share it.
+    """A map, opened for any number of queries. `bake` and `open` return it. Threads may share it.
 
-    All queries have the options of the program's commands, with "_" in place of "-"; see
-    ``spawnfield.options("sample")``. Robots are a Robot, or the name of a robot's file.
+    All queries take the options of the program's command of the same name, with "_" in place of "-", and have its
+    defaults; ``spawnfield.options("sample")`` lists them. A robot is a `Robot`, or the name of a robot's file.
+
+    Raises:
+        ArgumentError: an option of a query is unknown, or beyond its limits.
+        FileError: a file that a query reads is missing or wrong, or a file cannot be written.
+        NothingFits: no pose can be valid, for example because the ``offset`` of a level robot puts it into the ground.
 
     Attributes:
         name: of the scene.
         folder: of the map.
-        hash: of the map's files.
-        lower, upper: corners of its bounds, m.
-        summary: of the bake, if it was just made.
+        hash: 16 hexadecimal digits, of the map's files.
+        lower, upper: (x, y, z) of the corners of its bounds, m.
+        summary: of the bake, if it was just made, as of ``--summary``; or empty.
     """
 
     def __init__(self, folder: File, *, summary: Mapping[str, Any] | None = None, _temporary: Any = None) -> None:
@@ -95,6 +110,21 @@ class World:
     def __repr__(self) -> str:
         return f"World({self.folder!r}: {self.name})"
 
+    @overload
+    def sample(
+        self, robot: Robot | File, count: int, *, progress: bool | None = None, **options: Any
+    ) -> Spawns: ...
+
+    @overload
+    def sample(
+        self, robot: Robot | File, *, pairs: int, progress: bool | None = None, **options: Any
+    ) -> Pairs: ...
+
+    @overload
+    def sample(
+        self, robot: Robot | File | None = None, *, progress: bool | None = None, **options: Any
+    ) -> Fleet: ...
+
     def sample(
         self, robot: Robot | File | None = None, count: int | None = None, *, progress: bool | None = None,
         **options: Any,
@@ -109,21 +139,42 @@ class World:
                 ``format``, files are written, too.
 
         Returns:
-            Spawns; with ``pairs``, Pairs; with ``fleet`` or ``fill``, Fleet. If fewer are found than wanted, the reason
-            is logged.
+            `Spawns`; with the option ``pairs``, `Pairs`; with ``fleet`` or ``fill``, a `Fleet`. If fewer are found than
+            wanted, the reason is logged.
         """
         if count is not None:
             options["count"] = count
         outcome = self._run("sample", robot, options, progress)
-        kinds = ((_core.FoundSpawns, Spawns), (_core.FoundPairs, Pairs), (_core.FoundFleet, Fleet))
-        return next(ours(outcome.result, outcome.summary) for kind, ours in kinds if isinstance(outcome.result, kind))
+        if isinstance(outcome.result, _core.FoundPairs):
+            return Pairs(outcome.result, outcome.summary)
+        if isinstance(outcome.result, _core.FoundFleet):
+            return Fleet(outcome.result, outcome.summary)
+        return Spawns(outcome.result, outcome.summary)
 
     def search(
         self, robot: Robot | File, count: int, *, progress: bool | None = None, **options: Any
     ) -> Spawns:
-        """Returns valid poses from a random search in a box, as ``spawnfield search``."""
+        """Returns valid poses from a random search in a box, as ``spawnfield search``.
+
+        Args:
+            robot: the robot.
+            count: number of poses.
+            progress: True: show progress with tqdm; None: only on a terminal, if tqdm is installed.
+            **options: for example ``max_failures=10000, seed=3``.
+
+        Returns:
+            The poses, in the order in which they were found. If fewer are found than wanted, the reason is logged.
+        """
         outcome = self._run("search", robot, {"count": count, **options}, progress)
         return Spawns(outcome.result, outcome.summary)
+
+    @overload
+    def check(
+        self, robot: Robot | File, poses: Any, *, progress: bool | None = None, **options: Any
+    ) -> Verdicts: ...
+
+    @overload
+    def check(self, robot: Robot | File, *, pairs: File, progress: bool | None = None, **options: Any) -> str: ...
 
     def check(
         self, robot: Robot | File, poses: Any = None, *, progress: bool | None = None, **options: Any
@@ -133,25 +184,25 @@ class World:
         Args:
             robot: the robot.
             poses: (n, 3): x, y, z; (n, 4): and yaw; (n, 6): and roll, pitch, yaw; or (n, 7): and a quaternion x, y, z,
-                w; m and rad; from numpy, torch or anything with DLPack. Or spawns, or the name of a CSV file.
+                w, of any length; m and rad, in the world's frame. They come from a list, numpy, torch or anything with
+                DLPack. Or `Spawns`, or the name of a CSV file.
             progress: True: show progress with tqdm; None: only on a terminal, if tqdm is installed.
-            **options: for example ``settle=True, repair=1.0, require_valid=True``.
+            **options: for example ``settle=True, repair=1.0, require_valid=True``. Without ``settle``, poses are
+                judged as they are.
 
         Returns:
-            Verdicts. With the option ``pairs``, the text of the CSV or JSON file.
+            `Verdicts`. With the option ``pairs`` in place of `poses`, the text of the CSV or JSON file.
 
         Raises:
             NotValid: with ``require_valid``, a pose is neither valid nor repaired.
         """
         inputs: dict[str, Any] = {}
-        if poses is not None and "poses" in options:
-            raise ArgumentError("--poses is given twice")
         if poses is not None:
             has_text = "out" in options or "repaired" in options
             options["poses"] = poses_word(poses, inputs, has_text)
         wants_text = options.get("pairs") is not None and "out" not in options
         outcome = self._run("check", robot, options, progress, inputs, wants_text)
-        found = Verdicts(outcome.result, outcome.summary) if outcome.result is not None else outcome.text
+        found = outcome.text if outcome.result is None else Verdicts(outcome.result, outcome.summary)
         if outcome.complaint:
             raise NotValid(outcome.complaint, found)
         return found
@@ -166,7 +217,10 @@ class World:
             step: distance between columns, m.
             dims: 2: a pose for each column and layer of ground; 3: for each column and height.
             progress: True: show progress with tqdm; None: only on a terminal, if tqdm is installed.
-            **options: for example ``stance="settled", yaw=1.57``.
+            **options: for example ``stance="settled", yaw=1.57``. Robots are level by default.
+
+        Returns:
+            One row for each pose; ``Raster.image`` and ``Raster.to_xarray`` make grids of them.
         """
         outcome = self._run("raster", robot, {"step": step, "dims": dims, **options}, progress)
         return Raster(outcome.result, outcome.summary, int(options.get("threads", 0)))
@@ -182,7 +236,11 @@ class World:
             format: "png", "svg" or "pdf".
             out: file to write, too.
             progress: True: show progress with tqdm; None: only on a terminal, if tqdm is installed.
-            **options: for example ``quantity="clearance", spawns=FILE``. ``spawns`` may be Spawns or an array of poses.
+            **options: for example ``quantity="clearance", spawns=spawns``, which may be `Spawns`, an array of poses as
+                for `check`, or a file.
+
+        Returns:
+            The picture; see docs/pictures.md.
         """
         inputs: dict[str, Any] = {}
         if options.get("spawns") is not None:
@@ -198,8 +256,17 @@ class World:
     def export(
         self, robot: Robot | File | None = None, *, progress: bool | None = None, **options: Any
     ) -> str | None:
-        """Writes files for simulators and other programs, as ``spawnfield export``. Returns the text if the option
-        ``out`` is not given. ``poses`` may be spawns or an array."""
+        """Writes the map, or poses, in the format of another program, as ``spawnfield export`` (docs/exports.md).
+
+        Args:
+            robot: the robot, for formats that need one.
+            progress: True: show progress with tqdm; None: only on a terminal, if tqdm is installed.
+            **options: for example ``format="unreal", poses=spawns``, which may be Spawns, an array of poses as for
+                `check`, or a file; and ``out``, the file to write.
+
+        Returns:
+            The text of the file; None with the option ``out``, which formats that are not text need.
+        """
         inputs: dict[str, Any] = {}
         if options.get("poses") is not None:
             options["poses"] = poses_word(options["poses"], inputs, has_text=True)
@@ -208,17 +275,32 @@ class World:
         return outcome.text if wants_text else None
 
     def experiment(self, robot: Robot | File, out: File, *, progress: bool | None = None, **options: Any) -> str:
-        """Runs rasters of many steps, or searches of many seeds, as ``spawnfield experiment``. Returns the folder."""
+        """Runs rasters of many steps, or searches of many seeds, as ``spawnfield experiment``.
+
+        Args:
+            robot: the robot.
+            out: folder to write: tables of counts and times.
+            progress: True: show progress with tqdm; None: only on a terminal, if tqdm is installed.
+            **options: for example ``dims=2, steps="0.5:1:0.25", runs=3``.
+
+        Returns:
+            The folder.
+        """
         self._run("experiment", robot, {"out": os.fspath(out), **options}, progress)
         return os.fspath(out)
 
     def info(
         self, robot: Robot | File | None = None, *, progress: bool | None = None, **options: Any
     ) -> dict[str, Any]:
-        """Returns the contents of the map, as ``spawnfield info --json``. ``islands=True`` lists the ground within
-        which the robot can drive."""
+        """Returns the contents of the map, as ``spawnfield info --json``.
+
+        Args:
+            robot: the robot, for ``islands``.
+            progress: True: show progress with tqdm; None: only on a terminal, if tqdm is installed.
+            **options: ``islands=True`` lists the ground within which the robot can drive; see docs/reach.md.
+        """
         outcome = self._run("info", robot, {**options, "json": True}, progress, wants_text=True)
-        return json.loads(outcome.text)
+        return dict(json.loads(outcome.text))
 
     def _run(
         self, command: str, robot: Robot | File | None, options: Mapping[str, Any], progress: bool | None,
@@ -250,7 +332,10 @@ def poses_word(poses: Any, inputs: dict[str, Any], has_text: bool) -> str:
     word = "poses in memory"
     if hasattr(poses, "pose"):
         poses = poses.pose
-    numbers = np.ascontiguousarray(_host_array(poses), np.float64)
+    try:
+        numbers = np.ascontiguousarray(_host_array(poses), np.float64)
+    except ValueError as error:  # for example rows of unequal length
+        raise ArgumentError(f"--poses is not an array of numbers: {error}") from None
     if numbers.ndim == 1:
         numbers = numbers[None, :]
     try:
@@ -261,10 +346,23 @@ def poses_word(poses: Any, inputs: dict[str, Any], has_text: bool) -> str:
 
 
 def info(what: File | Scene, *, progress: bool | None = None, **options: Any) -> dict[str, Any]:
-    """Returns the contents of a map, a scene or a robot, as ``spawnfield info --json``."""
-    inputs = {"scene in memory": what._core} if isinstance(what, Scene) else {}
-    word = "scene in memory" if inputs else os.fspath(what)
-    return json.loads(commands.run("info", [word], {**options, "json": True}, inputs, True, progress).text)
+    """Returns the contents of a map, a scene or a robot, as ``spawnfield info --json``.
+
+    Args:
+        what: name of a map folder, a scene file or a robot's file, or a Scene.
+        progress: True: show progress with tqdm; None: only on a terminal, if tqdm is installed.
+        **options: for example ``model_path="models"``; see ``spawnfield.options("info")``.
+
+    Raises:
+        FileError: the file is missing or wrong.
+    """
+    inputs: dict[str, Any] = {}
+    if isinstance(what, Scene):
+        word = "scene in memory"
+        inputs[word] = what._core
+    else:
+        word = os.fspath(what)
+    return dict(json.loads(commands.run("info", [word], {**options, "json": True}, inputs, True, progress).text))
 
 
 __all__: Sequence[str] = ["World", "bake", "info", "open"]

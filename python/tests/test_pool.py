@@ -1,5 +1,7 @@
 """The pool: no repetition, distances, weights, worlds, files, and the same draws for the same seed."""
 
+import subprocess
+import sys
 import time
 
 import numpy as np
@@ -119,6 +121,17 @@ def test_faults(world, robot):
         sf.Pool(world, robot, 10, min_path=3).draw(1)
     with pytest.raises(sf.ArgumentError, match="has 2000 rows"):
         sf.Pool.from_columns({"pose": np.zeros((2000, 7))}).draw(2001)
+
+
+def test_python_ends_while_a_pool_is_made():
+    script = (
+        "import spawnfield as sf\n"
+        "world = sf.bake(sf.Scene('plate').add_box((30, 30, 1), (0, 0, -0.5), label='terrain'))\n"
+        "pool = sf.Pool(world, sf.Robot('box:0.5,0.4,0.3'), 10_000_000)\n"
+        "print(len(pool.draw(3)))\n"
+    )
+    done = subprocess.run([sys.executable, "-B", "-c", script], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout) == (0, "3\n"), done.stderr
 
 
 def test_draws_are_quick(pool):

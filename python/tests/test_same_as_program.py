@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+import spawnfield as sf
+
 BOX = "box:0.99,0.67,0.39"
 
 
@@ -120,6 +122,8 @@ def test_export(world, robot, program, tmp_path):
 
 def test_bake(world, source, tmp_path, program):
     program("bake", source / "maps/training/scene.yaml", "-o", tmp_path / "map")
+    again = sf.bake(source / "maps/training/scene.yaml", tmp_path / "again", model_path=source / "maps")
+    assert again.hash == world.hash
     for file in sorted(Path(world.folder).iterdir()):
         if not file.name.startswith("reach-"):
             assert file.read_bytes() == (tmp_path / "map" / file.name).read_bytes(), file.name
