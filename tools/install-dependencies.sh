@@ -28,9 +28,10 @@ for argument in "$@"; do
   esac
 done
 
+is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 missing=()
 for package in "${packages[@]}"; do
-  [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+  is_installed "$package" || missing+=("$package")
 done
 [ ${#missing[@]} -eq 0 ] && exit 0
 
@@ -45,7 +46,7 @@ fi
 # One of the packages needs the package ca-certificates, which replaces a list of certificates that somebody copied to
 # its place, as on many containers behind a company's proxy. tools/pip-settings.sh still needs that list.
 certificates=/etc/ssl/certs/ca-certificates.crt
-if [ -r "$certificates" ] && ! dpkg-query -W ca-certificates >/dev/null 2>&1; then
+if [ -r "$certificates" ] && ! is_installed ca-certificates; then
   mkdir -p build
   cp "$certificates" build/certificates.crt
 fi
