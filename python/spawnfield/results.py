@@ -6,13 +6,14 @@ pose is the position of the robot's origin, x, y, z, and its rotation as a quate
 
 from __future__ import annotations
 
+import functools
 import io
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -90,6 +91,30 @@ def write_bytes(data: bytes, file: str | os.PathLike[str] | None) -> bytes:
     return data
 
 
+class Contacts:
+    """Where robots touch the ground at their settled poses. ``contacts[i]`` are those of pose i.
+
+    Attributes:
+        point: (k, 3) float64, m: the contacts of all poses, in their order.
+        normal: (k, 3) float64, of the ground at these points; length 1, upwards.
+        first: (n + 1,) int64, the first contact of each pose; then their number.
+    """
+
+    def __init__(self, point: np.ndarray, normal: np.ndarray, first: np.ndarray) -> None:
+        self.point, self.normal, self.first = point, normal, first
+
+    def __len__(self) -> int:
+        return len(self.first) - 1
+
+    def __getitem__(self, index: int) -> Contacts:
+        i = range(len(self))[index]
+        part = slice(self.first[i], self.first[i + 1])
+        return Contacts(self.point[part], self.normal[part], np.array([0, part.stop - part.start]))
+
+    def __repr__(self) -> str:
+        return f"Contacts({len(self.point)} of {len(self)} poses)"
+
+
 class Spawns(Table):
     """Valid poses of ``World.sample`` and ``World.search``, in the order in which they were found.
 
@@ -106,9 +131,12 @@ class Spawns(Table):
         undecided_area: m2 in which another one may fit; NaN if nothing is proven.
     """
 
-    def __init__(self, found: _core.FoundSpawns, summary: Mapping[str, Any]) -> None:
+    def __init__(
+        self, found: _core.FoundSpawns, summary: Mapping[str, Any], settle: Callable[[Spawns], Verdicts]
+    ) -> None:
         super().__init__(found.columns(), summary)
         self._found = found
+        self._settle = settle
         facts = found.facts()
         self.counts: dict[str, int] = facts["counts"]
         self.draws: int = facts["draws"]
@@ -124,6 +152,12 @@ class Spawns(Table):
     def verdict(self) -> np.ndarray:
         """(n,) uint8: all are VALID."""
         return np.full(len(self), VALID, np.uint8)
+
+    @functools.cached_property
+    def contacts(self) -> Contacts:
+        """Where the robots touch the ground if they are let down at the spawns. They are let down when this is asked
+        for first."""
+        return self._settle(self).contacts
 
     def to_csv(self, file: str | os.PathLike[str] | None = None) -> bytes:
         """Returns the CSV file that ``spawnfield sample`` writes, and writes it to `file` if that is given."""
@@ -208,17 +242,11 @@ class Verdicts(Table):
         """The verdict of each pose and its cause in words, for example "collision with thin_wall"."""
         return [self._found.reason(i) for i in range(len(self))]
 
-    def contacts(self, index: int) -> dict[str, np.ndarray]:
-        """Returns where the robot touches the ground at the settled pose of a row.
-
-        Args:
-            index: of the row.
-
-        Returns:
-            A dictionary of ``point``, (k, 3) float64, m, and ``normal``, (k, 3) float64, of the ground at these points.
-            k is 0 if robots were not let down (option ``settle``), or if there is no pose at rest.
-        """
-        return self._found.contacts(range(len(self))[index])
+    @functools.cached_property
+    def contacts(self) -> Contacts:
+        """Where the robots touch the ground at their settled poses. None for poses that were not let down (option
+        ``settle``), or that have no pose at rest."""
+        return Contacts(**self._found.contacts())
 
     def to_csv(self, file: str | os.PathLike[str] | None = None) -> bytes:
         """Returns the CSV file that ``spawnfield check`` writes, and writes it to `file` if that is given."""

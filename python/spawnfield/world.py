@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, overload
 
@@ -24,6 +24,9 @@ _SCENE_OPTIONS = ("label", "auto_label", "up", "scale", "heightmap", "unknown", 
                   "allow_missing", "model_path")  # fmt: skip
 #: Options that say how a robot's file is read.
 _ROBOT_OPTIONS = ("joints", "mesh_parts")
+#: Options that decide how a robot comes to rest.
+_REST_OPTIONS = (*_ROBOT_OPTIONS, "model_path", "with_", "with", "without", "time", "max_height", "lift", "max_tilt",
+                 "min_stability", "friction", "threads")  # fmt: skip
 
 
 def bake(scene: Any, out: File | None = None, *, progress: bool | None = None, **options: Any) -> World:
@@ -149,7 +152,7 @@ class World:
             return Pairs(outcome.result, outcome.summary)
         if isinstance(outcome.result, _core.FoundFleet):
             return Fleet(outcome.result, outcome.summary)
-        return Spawns(outcome.result, outcome.summary)
+        return Spawns(outcome.result, outcome.summary, self._settler(robot, options))
 
     def search(
         self, robot: Robot | File, count: int, *, progress: bool | None = None, **options: Any
@@ -166,7 +169,7 @@ class World:
             The poses, in the order in which they were found. If fewer are found than wanted, the reason is logged.
         """
         outcome = self._run("search", robot, {"count": count, **options}, progress)
-        return Spawns(outcome.result, outcome.summary)
+        return Spawns(outcome.result, outcome.summary, self._settler(robot, options))
 
     @overload
     def check(
@@ -301,6 +304,11 @@ class World:
         """
         outcome = self._run("info", robot, {**options, "json": True}, progress, wants_text=True)
         return dict(json.loads(outcome.text))
+
+    def _settler(self, robot: Robot | File | None, options: Mapping[str, Any]) -> Callable[[Spawns], Verdicts]:
+        """Returns a function that lets a robot down at spawns, with those options of a query that matter then."""
+        kept = {name: options[name] for name in _REST_OPTIONS if name in options}
+        return lambda spawns: self.check(robot, spawns, settle=True, **kept)
 
     def _run(
         self, command: str, robot: Robot | File | None, options: Mapping[str, Any], progress: bool | None,

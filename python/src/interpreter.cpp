@@ -131,11 +131,12 @@ nb::dict Interpreter::run(const std::vector<std::string>& words, bool wants_text
     wants_text_ = wants_text;
     cli::ChosenCommand chosen{.host = this};
     CLI::App app;
-    cli::add_commands(app, line_of(words), chosen);
+    cli::add_commands(app, line_of(words), chosen, words.empty() ? "" : words.front());
     parse(app, words);
     int status = cli::done;
     std::exception_ptr failure;
-    std::thread worker([&] {
+    // Python may end this thread while it waits. The worker is joined then, too.
+    std::jthread worker([&] {
         try {
             status = cli::run_command(chosen);
         } catch (...) {

@@ -230,23 +230,28 @@ nb::dict columns_of(const cli::FoundVerdicts& found)
     return out;
 }
 
-/// Returns the places at which a settled robot touches the ground: points and normals of shape (k, 3), m.
-nb::dict contacts_of(const cli::FoundVerdicts& found, std::size_t index)
+/// Returns the places at which settled robots touch the ground: points and normals of shape (k, 3), m, and the first
+/// one of each pose; then their number.
+nb::dict contacts_of(const cli::FoundVerdicts& found)
 {
     std::vector<double> points, normals;
+    std::vector<std::int64_t> first{0};
     const auto append = [](std::vector<double>& out, const Vec3& value) {
         out.insert(out.end(), {value.x(), value.y(), value.z()});
     };
-    std::size_t count = 0;
-    if (index < found.settled.size())
-        for (const RestContact& contact : found.settled[index].contacts) {
+    for (const SettledPose& pose : found.settled) {
+        for (const RestContact& contact : pose.contacts) {
             append(points, contact.point);
             append(normals, contact.normal);
-            ++count;
         }
+        first.push_back(std::int64_t(points.size() / 3));
+    }
+    first.resize(found.judgements.size() + 1, first.back());  // poses as given have none
+    const std::size_t count = points.size() / 3;
     nb::dict out;
     out["point"] = array_of(std::move(points), {count, 3});
     out["normal"] = array_of(std::move(normals), {count, 3});
+    out["first"] = array_of(std::move(first));
     return out;
 }
 

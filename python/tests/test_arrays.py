@@ -47,10 +47,25 @@ def test_settled_contacts(world, robot):
     spawn = world.sample(robot, 1, seed=3)
     verdicts = world.check(robot, spawn, settle=True)
     assert verdicts.valid.all() and verdicts.settled.shape == (1, 7)
-    contacts = verdicts.contacts(0)
-    assert contacts["point"].shape == contacts["normal"].shape and len(contacts["point"]) >= 3
-    assert np.allclose(np.linalg.norm(contacts["normal"], axis=1), 1)
-    assert np.linalg.norm(contacts["point"] - spawn.position, axis=1).max() < 1
+    contacts = verdicts.contacts[0]
+    assert contacts.point.shape == contacts.normal.shape and len(contacts.point) >= 3
+    assert np.allclose(np.linalg.norm(contacts.normal, axis=1), 1)
+    assert np.linalg.norm(contacts.point - spawn.position, axis=1).max() < 1
+
+
+def test_contacts_of_spawns(world, robot):
+    limits = {"lift": 0.05, "max_slope": 20, "seed": 3}
+    spawns = world.sample(robot, 50, stance="settled", **limits)
+    contacts = spawns.contacts
+    assert len(contacts) == 50 and contacts.point.shape == contacts.normal.shape == (contacts.first[-1], 3)
+    for i, position in enumerate(spawns.position):
+        below = contacts[i].point - (position - [0, 0, limits["lift"]])  # the spawn is raised
+        assert len(below) >= 3 and np.linalg.norm(below, axis=1).max() < 1
+        # The mass, here the middle of the box, is inside the polygon of the contacts.
+        middle = below.mean(axis=0)
+        assert np.linalg.norm(middle[:2]) < 0.5 and abs(middle[2]) < 0.5
+    assert len(world.check(robot, spawns).contacts.point) == 0  # not let down
+    assert len(world.sample(robot, 2, seed=1).contacts) == 2
 
 
 def test_hit_and_reason():

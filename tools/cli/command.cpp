@@ -4,6 +4,11 @@
 #include "messages.h"
 #include "numbers.h"
 
+#include <algorithm>
+#include <functional>
+#include <utility>
+#include <vector>
+
 namespace spawnfield::cli {
 
 Ending interrupted_ending(std::size_t found, const std::string& noun, std::optional<std::size_t> wanted)
@@ -13,7 +18,7 @@ Ending interrupted_ending(std::size_t found, const std::string& noun, std::optio
                          (found == 1 ? " was" : " were") + " found and written"};
 }
 
-void add_commands(CLI::App& app, const std::string& command_line, ChosenCommand& chosen)
+void add_commands(CLI::App& app, const std::string& command_line, ChosenCommand& chosen, const std::string& name)
 {
     app.name("spawnfield");
     app.description("spawnfield: where can this robot stand in this world?");
@@ -25,16 +30,23 @@ void add_commands(CLI::App& app, const std::string& command_line, ChosenCommand&
         "Example:\n"
         "  spawnfield bake maps/training/scene.yaml -o /tmp/training\n"
         "  spawnfield sample /tmp/training --robot maps/robots/husky.yaml -n 10");
-    add_bake(app, chosen);
-    add_info(app, chosen);
-    add_check(app, chosen);
-    add_raster(app, chosen);
-    add_search(app, chosen);
-    add_sample(app, chosen);
-    add_heatmap(app, chosen);
-    add_export(app, chosen);
-    add_audit(app, chosen);
-    add_experiment(app, command_line, chosen);
+    using Add = std::function<void()>;
+    const std::vector<std::pair<std::string, Add>> commands{
+        {"bake", [&] { add_bake(app, chosen); }},
+        {"info", [&] { add_info(app, chosen); }},
+        {"check", [&] { add_check(app, chosen); }},
+        {"raster", [&] { add_raster(app, chosen); }},
+        {"search", [&] { add_search(app, chosen); }},
+        {"sample", [&] { add_sample(app, chosen); }},
+        {"heatmap", [&] { add_heatmap(app, chosen); }},
+        {"export", [&] { add_export(app, chosen); }},
+        {"audit", [&] { add_audit(app, chosen); }},
+        {"experiment", [&] { add_experiment(app, command_line, chosen); }},
+    };
+    const auto is_it = [&](const auto& command) { return command.first == name; };
+    const bool is_known = std::any_of(commands.begin(), commands.end(), is_it);
+    for (const auto& command : commands)
+        if (!is_known || is_it(command)) command.second();
 }
 
 int run_command(const ChosenCommand& chosen)

@@ -74,6 +74,7 @@ void add_audit(CLI::App& app, ChosenCommand& chosen);
 void add_experiment(CLI::App& app, const std::string& command_line, ChosenCommand& chosen);
 
 /// Adds all commands and the text of the program's help. `command_line`: for reports. `chosen` must have its host.
-void add_commands(CLI::App& app, const std::string& command_line, ChosenCommand& chosen);
+/// `name`: of the only command that is needed, if there is one of this name.
+void add_commands(CLI::App& app, const std::string& command_line, ChosenCommand& chosen, const std::string& name = "");
 
 }  // namespace spawnfield::cli

@@ -18,6 +18,7 @@ inline void add_model_path(CLI::App& command, ModelPathArgs& args)
         .add_option("--model-path,--package-path", args.model_paths,
                     "Folder with models or ROS packages, for model:// and package:// in SDF and URDF (repeatable). "
                     "GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH and the folders above the file are searched after it")
+        ->allow_extra_args(false)
         ->check(CLI::ExistingDirectory);
 }
 

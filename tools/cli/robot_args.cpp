@@ -25,8 +25,10 @@ void parse_joints(const std::string& text, std::vector<JointPosition>& out)
 
 void add_robot_options(CLI::App& command, RobotArgs& args)
 {
-    command.add_option("--joints", args.joints,
-                       "name=value,…: positions of joints of a URDF or SDF model, rad or m (default 0; repeatable)");
+    command
+        .add_option("--joints", args.joints,
+                    "name=value,…: positions of joints of a URDF or SDF model, rad or m (default 0; repeatable)")
+        ->allow_extra_args(false);
     command
         .add_option(
             "--mesh-parts", args.mesh_parts,

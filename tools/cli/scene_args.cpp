@@ -34,9 +34,11 @@ double parse_slope(const std::string& text)
 
 void add_label_options(CLI::App& command, SceneArgs& args)
 {
-    command.add_option("--label", args.labels,
-                       "'GLOB=LABEL': label of all nodes, materials, parts, models, links or collisions whose name "
-                       "matches (repeatable; the first match wins)");
+    command
+        .add_option("--label", args.labels,
+                    "'GLOB=LABEL': label of all nodes, materials, parts, models, links or collisions whose name "
+                    "matches (repeatable; the first match wins)")
+        ->allow_extra_args(false);
     command.add_option("--auto-label", args.auto_label,
                        "slope=DEG: label by slope what no label names. Faces that look up and are less steep than DEG "
                        "degrees are terrain, others obstacles (meshes, OctoMaps, worlds)");
