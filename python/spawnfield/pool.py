@@ -5,7 +5,6 @@ from __future__ import annotations
 import atexit
 import os
 import threading
-import weakref
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -15,7 +14,20 @@ from .errors import ArgumentError
 from .robot import Robot
 from .world import World
 
-_CHUNK = 1 << 15  # spawns that are made at once, so that the first draw does not wait for the whole pool
+#: Spawns that are made at once: few at first, so that the first draw waits for little, then twice as many each time.
+_FIRST_CHUNK, _LAST_CHUNK = 1 << 11, 1 << 15
+
+_in_work: set[Pool] = set()
+
+
+@atexit.register
+def _end_work() -> None:
+    """Waits for the threads of pools, because a thread that is in a command when Python ends aborts the process."""
+    pools = list(_in_work)
+    for pool in pools:
+        pool.close()
+    for pool in pools:
+        pool._thread.join()
 
 
 class Pool:
@@ -58,31 +70,33 @@ class Pool:
         self._tensors: dict[Any, Any] = {}
         work = list(zip(self._decks, worlds, robots))
         self._thread = threading.Thread(target=self._make, args=(work, size, pairs, options), daemon=True)
+        _in_work.add(self)
         self._thread.start()
-        _filling.add(self)
         if not background:
             self.wait()
 
     @classmethod
-    def from_columns(cls, columns: Mapping[str, np.ndarray], *, seed: int = 0) -> Pool:
-        """Returns a pool of given rows.
+    def from_columns(cls, columns: Mapping[str, np.ndarray], *, seed: int | None = None) -> Pool:
+        """Returns a pool of given rows, for example those of `save`.
 
         Args:
             columns: arrays of equal length, as of `columns`: ``pose``, or ``start`` and ``goal``, of shape (n, 7), and
                 any others. ``world`` is optional.
-            seed: of the draws.
+            seed: the rows are drawn in the given order, or with a seed in the order of `restart`.
         """
         pool = cls.__new__(cls)
         pool._pose = "pose" if "pose" in columns else "start"
         world = np.asarray(columns.get("world", np.zeros(len(columns[pool._pose]), np.int64)))
         pool._decks = []
         for k in range(int(world.max(initial=0)) + 1):
-            deck = _Deck(int((world == k).sum()), seed, k)
+            deck = _Deck(int((world == k).sum()), seed or 0, k)
             deck.append({n: np.asarray(v)[world == k] for n, v in columns.items() if n != "world"})
             deck.close()
             pool._decks.append(deck)
         pool._changed = threading.Condition()
         pool._failure, pool._is_closed, pool._tensors = None, True, {}
+        if seed is not None:
+            pool.restart(seed)
         return pool
 
     def __len__(self) -> int:
@@ -115,6 +129,16 @@ class Pool:
         """Ends the work in the background, after the spawns that are being made now (at most 32,768). The pool keeps
         the rows that it has. When Python ends, it closes all pools, and waits for these spawns."""
         self._is_closed = True
+
+    def restart(self, seed: int) -> None:
+        """Begins anew: all rows can be drawn again, in a random order that depends only on the seed and the weights.
+
+        So environments repeat their starts, for example in ``reset(seed=...)`` of Gymnasium. Waits until all rows are
+        there.
+        """
+        self.wait()
+        for k, deck in enumerate(self._decks):
+            deck.restart(seed, k)
 
     def weigh(self, weights: str | np.ndarray | Callable[[dict[str, np.ndarray]], np.ndarray] | None) -> None:
         """Sets the probability of each row in later draws. Waits until all rows are there.
@@ -198,8 +222,12 @@ class Pool:
         write_bytes(data.getvalue(), file)
 
     @classmethod
-    def load(cls, file: str | os.PathLike[str], *, seed: int = 0) -> Pool:
-        """Returns the pool of a file that `save` has written. Draws begin anew, with another `seed` if it is given."""
+    def load(cls, file: str | os.PathLike[str], *, seed: int | None = None) -> Pool:
+        """Returns the pool of a file that `save` has written. Draws begin anew, in the order of the rows, or with a
+        seed in that of `restart`.
+
+        Processes that read the same file draw different rows if they have different seeds.
+        """
         with np.load(file, allow_pickle=False) as columns:
             return cls.from_columns(dict(columns), seed=seed)
 
@@ -215,7 +243,16 @@ class Pool:
                     self._changed.wait(0.1)
                 self._raise_failure()
             return self._take(k, count, min_distance)  # the world may have fewer rows than it was asked for
-        return deck.take(count) if min_distance <= 0 else deck.take_apart(count, min_distance, self._pose)
+        if min_distance <= 0:
+            return deck.take(count)
+        is_complete = deck.is_complete
+        try:
+            return deck.take_apart(count, min_distance, self._pose)
+        except ArgumentError:
+            if is_complete:
+                raise
+        self.wait()  # rows that are not made yet may be far enough apart
+        return deck.take_apart(count, min_distance, self._pose)
 
     def _fill(self, out: Any, rows: np.ndarray | None, drawn: "Draw") -> None:
         if not hasattr(out, "device") or isinstance(out, np.ndarray):
@@ -223,14 +260,16 @@ class Pool:
             return
         import torch
 
-        self.wait()
+        places = torch.as_tensor(rows).to(out.device)
+        if not all(deck.is_complete for deck in self._decks):  # there is no copy on the device yet
+            out[places] = torch.as_tensor(drawn.column(self._pose)).to(out.device, out.dtype)
+            return
         key = (out.device, out.dtype)
         if key not in self._tensors:
             poses = np.concatenate([deck.rows()[self._pose] for deck in self._decks])
             self._tensors[key] = torch.as_tensor(poses).to(out.device, out.dtype)
         first = np.cumsum([0, *(deck.size for deck in self._decks)])
-        places = torch.as_tensor(first[drawn.world] + drawn.index).to(out.device)
-        out[torch.as_tensor(rows).to(out.device)] = self._tensors[key][places]
+        out[places] = self._tensors[key][torch.as_tensor(first[drawn.world] + drawn.index).to(out.device)]
 
     def _raise_failure(self) -> None:
         if self._failure is not None:
@@ -239,8 +278,10 @@ class Pool:
     def _make(self, work: list[tuple["_Deck", World, Robot]], size: int, pairs: bool, options: dict[str, Any]) -> None:
         try:
             for deck, world, robot in work:
+                chunk = _FIRST_CHUNK
                 while not self._is_closed and deck.made < size:
-                    wanted = min(_CHUNK, size - deck.made)
+                    wanted = min(chunk, size - deck.made)
+                    chunk = min(2 * chunk, _LAST_CHUNK)
                     seed = deck.next_seed()
                     number = {"pairs" if pairs else "count": wanted}
                     found = world.sample(robot, **number, seed=seed, progress=False, **options)
@@ -256,19 +297,8 @@ class Pool:
             with self._changed:
                 self._failure = error
                 self._changed.notify_all()
-
-
-_filling: weakref.WeakSet[Pool] = weakref.WeakSet()
-
-
-@atexit.register
-def _close_all() -> None:
-    """A thread that runs a command while Python is taken down would abort the process, so all pools end before."""
-    pools = list(_filling)
-    for pool in pools:
-        pool.close()
-    for pool in pools:
-        pool._thread.join()
+        finally:
+            _in_work.discard(self)
 
 
 class Draw:
@@ -290,11 +320,11 @@ class Draw:
     def column(self, name: str) -> np.ndarray:
         """Returns a column of these rows, for example "pose"."""
         if len(self._decks) == 1:
-            return self._decks[0].buffers[name][self.index]
+            return self._decks[0].buffers[name].take(self.index, axis=0)  # which is quicker than an index in brackets
         first = self._decks[0].buffers[name]
         out = np.empty((len(self.index), *first.shape[1:]), first.dtype)
         for k in np.unique(self.world):
-            out[self.world == k] = self._decks[k].buffers[name][self.index[self.world == k]]
+            out[self.world == k] = self._decks[k].buffers[name].take(self.index[self.world == k], axis=0)
         return out
 
     def __getattr__(self, name: str) -> np.ndarray:
@@ -333,6 +363,8 @@ class _Deck:
         """There will be no more rows."""
         self.size = self.made
         self.buffers = {name: buffer[: self.size] for name, buffer in self.buffers.items()}
+        if self._order is not None:
+            self._order = self._order[: self.size]
         self.is_complete = True
 
     def rows(self) -> dict[str, np.ndarray]:
@@ -340,6 +372,12 @@ class _Deck:
 
     def can_take(self, count: int) -> bool:
         return self._next + count <= self.made or self.is_complete
+
+    def restart(self, seed: int, number: int) -> None:
+        self._random = np.random.default_rng([seed, number, 1])
+        self.epoch = 0
+        self._next = 0
+        self._order = self._mixed(np.arange(self.size))
 
     def weigh(self, weights: np.ndarray | None) -> None:
         self._weights = weights

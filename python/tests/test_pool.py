@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import threading
 import time
 
 import numpy as np
@@ -52,6 +53,20 @@ def test_mask_fills_rows(pool):
     assert (poses[mask] == drawn.pose).all() and (poses[~mask] == 0).all()
     with pytest.raises(sf.ArgumentError, match="of bool"):
         pool.draw(np.zeros(10))
+
+
+def test_tensors(pool, world, robot):
+    """Needs torch, which is not one of the packages of the tests because of its size."""
+    torch = pytest.importorskip("torch", reason="torch is not installed")
+    mask = torch.arange(4096) % 16 == 5
+    for one in (fresh(pool), sf.Pool(world, robot, 200_000)):  # complete; still being made
+        poses = torch.zeros(4096, 7)
+        drawn = one.draw(mask, out=poses)
+        assert (poses[mask].numpy() == drawn.pose.astype(np.float32)).all() and (poses[~mask] == 0).all()
+    low = sf.Pool.from_columns({"pose": np.arange(70.0).reshape(10, 7), "world": np.arange(10) // 5})
+    poses = torch.zeros(3, 7, dtype=torch.float64)
+    drawn = low.draw(torch.tensor([True, False, True]), out=poses, world=torch.tensor([1, 0, 0]))
+    assert poses[:, 0].tolist() == [35, 0, 0] and drawn.world.tolist() == [1, 0]
 
 
 def test_min_distance(pool):
@@ -106,6 +121,83 @@ def test_save_and_load(pool, tmp_path):
     assert again.columns.keys() == pool.columns.keys()
 
 
+class SlowWorld:
+    """Gives rows at one place, and when it is released, rows that are 1 m apart."""
+
+    name = "slow"
+
+    def __init__(self):
+        self.released = threading.Event()
+        self.chunks = 0
+
+    def sample(self, robot, count, **options):
+        self.chunks += 1
+        poses = np.zeros((count, 7))
+        if self.chunks > 1:
+            self.released.wait()
+            poses[:, 0] = np.arange(count)
+        return Rows(poses)
+
+
+class Rows:
+    def __init__(self, poses):
+        self.columns = {"pose": poses}
+
+    def __len__(self):
+        return len(self.columns["pose"])
+
+
+def test_min_distance_waits_for_rows(robot):
+    world = SlowWorld()
+    pool = sf.Pool([world], robot, 10_000)
+    threading.Timer(0.3, world.released.set).start()
+    assert len(pool.draw(3, min_distance=0.9)) == 3
+
+
+def test_close_before_all_rows_are_there(robot):
+    world = SlowWorld()
+    pool = sf.Pool([world], robot, 10_000)
+    pool.draw(1, min_distance=1.0)
+    pool.close()
+    world.released.set()
+    pool.wait()
+    rows = len(pool)
+    assert rows < 10_000
+    drawn = np.concatenate([pool.draw(rows - 10).index for _ in range(2)])  # over the end of the epoch
+    assert drawn.max() < rows and len(np.unique(drawn[: rows - 1])) == rows - 1
+
+
+def test_python_can_end_while_a_pool_is_made(source):
+    code = """import spawnfield as sf
+world = sf.bake("maps/training/scene.yaml")
+print(sf.Pool(world, "maps/robots/husky.yaml", 10_000_000).draw(3).pose.shape)"""
+    done = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, check=False, cwd=source)
+    assert done.returncode == 0 and done.stdout == "(3, 7)\n", done.stderr
+
+
+def test_restart_repeats_draws(pool, tmp_path):
+    pool = fresh(pool)
+    pool.draw(1500)
+    pool.restart(5)
+    first = [pool.draw(900).index for _ in range(3)]
+    assert len(np.unique(np.concatenate(first[:2]))) == 1800 and pool.epoch.tolist() == [1]
+    pool.restart(5)
+    assert pool.epoch.tolist() == [0] and all((pool.draw(900).index == rows).all() for rows in first)
+    pool.restart(6)
+    assert (pool.draw(900).index != first[0]).any()
+    pool.save(tmp_path / "pool.npz")  # processes that read one file
+    seeds = [sf.Pool.load(tmp_path / "pool.npz", seed=seed).draw(900).index for seed in (5, 5, 6)]
+    assert (seeds[0] == first[0]).all() and (seeds[1] == first[0]).all() and (seeds[2] != first[0]).any()
+
+
+def test_restart_keeps_weights(pool):
+    right = (pool.columns["pose"][:, 0] > 0).astype(float)
+    pool = fresh(pool)
+    pool.weigh(right)
+    pool.restart(3)
+    assert (pool.draw(200).pose[:, 0] > 0).all()
+
+
 def test_pairs(world, robot):
     pool = sf.Pool(world, robot, 50, pairs=True, min_path=2, reach_step=0.4, background=False)
     drawn = pool.draw(20)
@@ -121,17 +213,6 @@ def test_faults(world, robot):
         sf.Pool(world, robot, 10, min_path=3).draw(1)
     with pytest.raises(sf.ArgumentError, match="has 2000 rows"):
         sf.Pool.from_columns({"pose": np.zeros((2000, 7))}).draw(2001)
-
-
-def test_python_ends_while_a_pool_is_made():
-    script = (
-        "import spawnfield as sf\n"
-        "world = sf.bake(sf.Scene('plate').add_box((30, 30, 1), (0, 0, -0.5), label='terrain'))\n"
-        "pool = sf.Pool(world, sf.Robot('box:0.5,0.4,0.3'), 10_000_000)\n"
-        "print(len(pool.draw(3)))\n"
-    )
-    done = subprocess.run([sys.executable, "-B", "-c", script], capture_output=True, text=True, timeout=60)
-    assert (done.returncode, done.stdout) == (0, "3\n"), done.stderr
 
 
 def test_draws_are_quick(pool):
