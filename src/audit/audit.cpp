@@ -38,16 +38,6 @@ std::string culprit_of(const SettledPose& pose, const Map& map)
     return pose.ground ? map.geometry.parts()[pose.ground->part].name : "";
 }
 
-/// Returns why a robot cannot stand at a pose, in words.
-std::string reason_for(const SettledPose& pose, const Judge& judge, const std::string& culprit)
-{
-    // Judge::describe() names the layer onto which the robot was let down, also if it rests on an obstacle there.
-    const bool rests_elsewhere = pose.verdict == Verdict::OffTerrain && !pose.hit && pose.has_pose;
-    if (rests_elsewhere && !culprit.empty())
-        return std::string(to_string(pose.verdict)) + ": it comes to rest on " + culprit;
-    return judge.describe(pose);
-}
-
 std::vector<BadPose> find_bad_poses(const Judge& judge, const AuditOptions& options, const Progress& progress)
 {
     std::vector<Pose> poses;
@@ -61,11 +51,10 @@ std::vector<BadPose> find_bad_poses(const Judge& judge, const AuditOptions& opti
     std::vector<BadPose> out;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         if (!repairs.repairs[i]) continue;
-        const std::string culprit = culprit_of(settled[i], judge.map());
         out.push_back({.pose = i,
                        .verdict = judgements[i].verdict,
-                       .reason = reason_for(settled[i], judge, culprit),
-                       .culprit = culprit,
+                       .reason = judge.describe(settled[i]),
+                       .culprit = culprit_of(settled[i], judge.map()),
                        .repair = *repairs.repairs[i]});
     }
     return out;

@@ -36,10 +36,8 @@ void add_robot(std::vector<JunitCase>& out, const AuditReport& report, const Rob
 {
     const std::string name = robot_name(robot.judge.robot());
     for (std::size_t i = 0; i < report.poses.size(); ++i) {
-        const auto bad = std::find_if(robot.bad_poses.begin(), robot.bad_poses.end(),
-                                      [&](const BadPose& pose) { return pose.pose == i; });
         JunitCase pose{.name = report.poses[i].name, .group = name};
-        if (bad != robot.bad_poses.end()) {
+        if (const BadPose* const bad = bad_pose_at(robot, i)) {
             pose.type = to_string(bad->verdict);
             pose.message = bad->reason;
             pose.details = xml_text(words_of(*bad)) + "\n";

@@ -61,6 +61,13 @@ std::string counted_things(std::size_t count, const std::string& thing)
     return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
+const BadPose* bad_pose_at(const RobotAudit& robot, std::size_t pose)
+{
+    for (const BadPose& bad : robot.bad_poses)
+        if (bad.pose == pose) return &bad;
+    return nullptr;
+}
+
 std::vector<FindingClass> finding_classes(const AuditReport& report)
 {
     std::vector<FindingClass> out{

@@ -27,6 +27,9 @@ std::vector<FindingClass> finding_classes(const AuditReport& report);
 std::string words_of(const ClosedRoom& room);
 std::string words_of(const BadPose& pose);  ///< the verdict, its cause and the repair
 
+/// Returns what is wrong with a start pose for a robot, or nullptr if it is valid. `pose`: its index.
+const BadPose* bad_pose_at(const RobotAudit& robot, std::size_t pose);
+
 /// Returns "12.3 m2 (45 %)".
 std::string area_words(double area, double share);
 

@@ -36,7 +36,6 @@ struct Props {
     std::vector<PropElement> elements;
 
     std::size_t examined() const;
-    const std::string& name_of(std::uint32_t prop) const { return all[prop].name; }
 };
 
 std::vector<SunkenProp> find_sunken(const Geometry& geometry, const Props& props, int threads);

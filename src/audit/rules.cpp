@@ -35,12 +35,10 @@ void add_poses(std::vector<RuleResult>& out, const AuditRules& rules, const Audi
     const std::string name = robot_name(robot.judge.robot());
     for (std::size_t i = 0; i < report.poses.size(); ++i) {
         if (!is_required(rules, report.poses[i])) continue;
-        const auto bad = std::find_if(robot.bad_poses.begin(), robot.bad_poses.end(),
-                                      [&](const BadPose& pose) { return pose.pose == i; });
-        const bool is_kept = bad == robot.bad_poses.end();
+        const BadPose* const bad = bad_pose_at(robot, i);
         const std::string where = report.poses[i].name + ", " + name;
-        out.push_back(
-            {"require", where, is_kept, where + ": " + (is_kept ? "valid" : bad->reason + "; the pose must be valid")});
+        out.push_back({"require", where, bad == nullptr,
+                       where + ": " + (bad == nullptr ? "valid" : bad->reason + "; the pose must be valid")});
     }
 }
 
