@@ -1,5 +1,6 @@
 #include <spawnfield/audit.h>
 
+#include "query/obstacle_below.h"
 #include "reach/reach_graph.h"
 
 #include <spawnfield/error.h>
@@ -33,8 +34,7 @@ std::string culprit_of(const SettledPose& pose, const Map& map)
 {
     if (pose.hit) return name_of(*pose.hit, map);
     if (pose.verdict != Verdict::OffTerrain) return "";
-    for (const RestContact& contact : pose.contacts)
-        if (contact.label == Label::Obstacle) return map.geometry.parts()[contact.ground].name;
+    if (const auto obstacle = obstacle_below(pose.contacts)) return name_of(*obstacle, map);
     return pose.ground ? map.geometry.parts()[pose.ground->part].name : "";
 }
 

@@ -1,8 +1,6 @@
 #include "audit/audit_words.h"
 #include "poses/judged_pose.h"
 
-#include <algorithm>
-
 namespace spawnfield {
 namespace {
 

@@ -1,6 +1,7 @@
 #include "base/number.h"
 #include "base/rotation.h"
 #include "query/neighbourhoods.h"
+#include "query/obstacle_below.h"
 #include "query/stand_judge.h"
 #include "query/timed_part.h"
 #include "settle/friction.h"
@@ -463,18 +464,6 @@ double auto_min_stability(const Robot& robot)
     return share * (box.max - box.min).head<2>().maxCoeff();
 }
 
-namespace {
-
-/// Returns the name of an obstacle on which a robot at rest stands; empty if there is none.
-std::string obstacle_below(const SettledPose& pose, const Map& map)
-{
-    for (const RestContact& contact : pose.contacts)
-        if (contact.label != Label::Terrain) return name_of(CollisionHit{contact.ground}, map);
-    return "";
-}
-
-}  // namespace
-
 std::string Judge::describe(const SettledPose& pose) const
 {
     const auto degrees = [](double angle) { return rounded(angle * 180 / std::numbers::pi) + " degrees"; };
@@ -482,11 +471,10 @@ std::string Judge::describe(const SettledPose& pose) const
     const std::string verdict = to_string(pose.verdict),
                       what = pose.hit ? name_of(*pose.hit, impl_->map) : std::string();
     switch (pose.verdict) {
-    case Verdict::OffTerrain: {
-        const std::string obstacle = pose.hit ? what : obstacle_below(pose, impl_->map);
-        if (!obstacle.empty()) return verdict + ": it comes to rest on " + obstacle;
+    case Verdict::OffTerrain:
+        if (const auto obstacle = pose.hit ? pose.hit : obstacle_below(pose.contacts))
+            return verdict + ": it comes to rest on " + name_of(*obstacle, impl_->map);
         break;
-    }
     case Verdict::Collision:
         if (!pose.has_pose) return verdict + ": it has no room to settle" + (pose.hit ? ", because of " + what : "");
         if (!pose.hit) return verdict + ": its pose belongs to a higher layer";

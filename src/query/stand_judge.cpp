@@ -1,5 +1,6 @@
 #include "query/stand_judge.h"
 
+#include "query/obstacle_below.h"
 #include "query/timed_part.h"
 #include "settle/friction.h"
 
@@ -19,14 +20,6 @@ double without_noise(double angle)
 {
     constexpr double noise = 1e-12;  // rad: far below what any check notices
     return std::abs(angle) < noise ? 0.0 : angle;
-}
-
-/// Returns an obstacle on which the robot rests, if there is one.
-std::optional<CollisionHit> obstacle_below(const std::vector<RestContact>& contacts)
-{
-    for (const RestContact& contact : contacts)
-        if (contact.label != Label::Terrain) return CollisionHit{contact.ground};
-    return std::nullopt;
 }
 
 /// Returns the heading with the largest value; of those that differ by at most `equal`, the first one.
