@@ -304,8 +304,8 @@ std::set<std::uint32_t> islands_near(const Impl& graph, const Vec3& point)
 {
     std::set<std::uint32_t> out;
     double nearest = 1.5 * graph.grid.step;
-    graph.for_each_place([&](std::size_t p, double x, double y) {
-        const double distance = (Vec3(x, y, graph.ground[p]) - point).norm();
+    graph.for_each_place([&](std::size_t p, int col, int row) {
+        const double distance = (Vec3(graph.grid.x_of(col), graph.grid.y_of(row), graph.ground[p]) - point).norm();
         if (!(distance < nearest)) return;
         nearest = distance;
         out.clear();

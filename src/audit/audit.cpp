@@ -65,7 +65,7 @@ std::vector<bool> has_room_to_turn(const ReachGraph::Impl& graph)
 {
     constexpr auto all = HeadingSet(~0u);
     std::vector<bool> out(graph.islands.size());
-    graph.for_each_place([&](std::size_t place, double, double) {
+    graph.for_each_place([&](std::size_t place, int, int) {
         if (graph.valid[place] != all) return;
         std::size_t islands = 0, last = 0;
         graph.for_each_island(place, [&](std::uint32_t island) {

@@ -51,6 +51,8 @@ public:
         put_array(of_runs);
         put_array(lengths);
     }
+    /// Appends what another writer has collected.
+    void put_all(BinaryWriter other) { bytes_ += other.bytes_; }
     /// Appends a u32 length, then the text.
     void put_text(const std::string& text)
     {

@@ -10,6 +10,8 @@
 #include <spawnfield/query.h>
 
 #include <algorithm>
+#include <bit>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -148,8 +150,15 @@ bool is_stopped(const Options& options)
 }
 
 // Neighbours are judged one after the other within blocks of so many draws. In larger blocks, they are nearer to each
-// other; in smaller ones, less is lost when the work is stopped. A settled draw takes about as long as 30 level ones.
-inline constexpr std::size_t level_block = 1 << 18, settled_block = 1 << 11;
+// other; in smaller ones, less is lost when the work is stopped: about so much time.
+inline constexpr std::size_t smallest_block = 1 << 11, largest_block = 1 << 18;
+inline constexpr double block_time = 0.5;  // s
+
+/// Returns the number of draws in a block if one of them takes so many seconds.
+inline std::size_t block_for(double time)
+{
+    return std::bit_floor(std::size_t(std::clamp(block_time / time, double(smallest_block), double(largest_block))));
+}
 
 /// Returns the indices of places block by block, each block in neighbourhoods.
 inline std::vector<std::uint32_t> in_blocks_of_neighbours(std::span<const Vec2> places, std::size_t block)
@@ -192,9 +201,9 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
                             const Place& place, const Look& look, const Take& take)
 {
     constexpr std::size_t chunk = 64;
-    const std::size_t block = options.stance == Stance::Settled ? settled_block : level_block;
-    static_assert(settled_block % chunk == 0 && level_block % chunk == 0);
-    std::vector<Candidate> batch;  // neighbour by neighbour
+    static_assert(smallest_block % chunk == 0);
+    std::size_t block = smallest_block;  // until it is known how long a draw takes
+    std::vector<Candidate> batch;        // neighbour by neighbour
     std::vector<Vec2> places;
     for (std::uint64_t next = first;;) {
         taken.settle();
@@ -209,6 +218,7 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
         const auto stop = [&] { return is_stopped(options); };
         PerThread<DrawThread> threads([&] { return DrawThread(shared, options.yaw); });
         const std::size_t chunks = (size + chunk - 1) / chunk;
+        const auto begun = std::chrono::steady_clock::now();
         const std::size_t done = parallel_until(chunks, options.threads, progress, stop, [&](std::size_t c) {
             DrawThread& thread = threads.local();
             if (is_sparse) thread.judge.use_coarse_cells();
@@ -234,6 +244,8 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
             if (!take(batch[number[i]])) return next;
         }
         if (is_late) return next;
+        block = block_for(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() /
+                          double(size));
     }
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 namespace spawnfield {
@@ -16,7 +18,9 @@ public:
     /// Adds sets of one number each, until there are `count` numbers. Not while other threads use the sets.
     void grow(std::size_t count)
     {
-        for (std::size_t i = parents_.size(); i < count; ++i) parents_.push_back(std::uint32_t(i));
+        const std::size_t before = parents_.size();
+        parents_.resize(count);
+        std::iota(parents_.begin() + std::ptrdiff_t(before), parents_.end(), std::uint32_t(before));
     }
 
     /// Returns the smallest number of the set, if no other thread joins it.

@@ -52,7 +52,7 @@ DisjointSets GraphBuilder::run()
         reuse_rows(begin, end);
         parallel_for(std::size_t(end - begin), threads, {},
                      [&](std::size_t k) { collect_states(begin + int(k), int(k)); });
-        for (int row = begin; row < end; ++row) append(rows_[std::size_t(row)]);
+        append_rows(begin, end);
         const auto for_rows = [&](int from, int to, auto&& visit) {
             parallel_for(std::size_t(to - from), threads, {}, [&](std::size_t k) { visit(from + int(k)); });
         };
@@ -139,25 +139,61 @@ void GraphBuilder::collect_states(int row, int index)
             next += count;
         }
     }
+    out.nodes = 0;
+    for (const PlaceStates& place : out.places) out.nodes += node_count(place);
 }
 
-/// Appends the places of a row to the graph.
-void GraphBuilder::append(const StateRow& row)
+/// Returns how many nodes a place has: one for all headings if it is open, because robots but cars turn on the spot.
+std::uint32_t GraphBuilder::node_count(const PlaceStates& place) const
 {
-    const std::uint32_t before = graph_.first.back();
-    for (std::size_t col = 1; col < row.first.size(); ++col) graph_.first.push_back(before + row.first[col]);
-    for (const PlaceStates& place : row.places) {
-        graph_.ground.push_back(place.ground);
-        graph_.valid.push_back(place.valid);
-        graph_.first_node.push_back(graph_.first_node.back() +
-                                    (place.is_open && !is_car_ ? 1 : std::uint32_t(std::popcount(place.valid))));
+    return place.is_open && !is_car_ ? 1 : std::uint32_t(std::popcount(place.valid));
+}
+
+/// Appends the places of some rows to the graph.
+void GraphBuilder::append_rows(int begin, int end)
+{
+    struct Offset {
+        std::size_t column, place, node;
+    };
+    std::vector<Offset> offsets{{graph_.column_of(0, begin), graph_.ground.size(), graph_.first_node.back()}};
+    for (int row = begin; row < end; ++row) {
+        const StateRow& states = rows_[std::size_t(row)];
+        const Offset& last = offsets.back();
+        offsets.push_back(
+            {last.column + std::size_t(graph_.grid.cols), last.place + states.places.size(), last.node + states.nodes});
     }
-    nodes_.grow(graph_.first_node.back());
+    const Offset& all = offsets.back();
+    parallel_for(5, graph_.options.threads, {},
+                 [&](std::size_t k) {  // new memory takes longer than what is written there
+                     switch (k) {
+                     case 0: return graph_.first.resize(all.column + 1);
+                     case 1: return graph_.ground.resize(all.place);
+                     case 2: return graph_.valid.resize(all.place);
+                     case 3: return graph_.first_node.resize(all.place + 1);
+                     default: return nodes_.grow(all.node);
+                     }
+                 });
+    parallel_for(std::size_t(end - begin), graph_.options.threads, {}, [&](std::size_t k) {
+        append(rows_[std::size_t(begin) + k], offsets[k].column, offsets[k].place, offsets[k].node);
+    });
     if (!keeps_ways_) return;
     ReachGraph::Impl::Ways no_ways;
     no_ways.fill(ReachGraph::Impl::nowhere);
-    for (const Pass& pass : passes_) graph_.ways[std::size_t(pass.way)].resize(graph_.ground.size(), no_ways);
-    graph_.ways[std::size_t(Way::Turn)].resize(graph_.ground.size(), no_ways);
+    for (const Pass& pass : passes_) graph_.ways[std::size_t(pass.way)].resize(all.place, no_ways);
+    graph_.ways[std::size_t(Way::Turn)].resize(all.place, no_ways);
+}
+
+/// Writes the places of a row into the graph, from a column, a place and a node on.
+void GraphBuilder::append(const StateRow& row, std::size_t column, std::size_t place, std::size_t node)
+{
+    for (std::size_t col = 1; col < row.first.size(); ++col)
+        graph_.first[column + col] = std::uint32_t(place + row.first[col]);
+    for (const PlaceStates& states : row.places) {
+        graph_.ground[place] = states.ground;
+        graph_.valid[place] = states.valid;
+        node += node_count(states);
+        graph_.first_node[++place] = std::uint32_t(node);
+    }
 }
 
 void GraphBuilder::find_open_nodes(int row)

@@ -40,6 +40,7 @@ private:
     struct StateRow {
         std::vector<std::uint32_t> first;  ///< first place of each column; then their number
         std::vector<PlaceStates> places;
+        std::size_t nodes = 0;  ///< of the places
         /// For each column whose only place is open, its node, later a number of the set of this node; else `none`.
         std::vector<std::uint32_t> open_sets;
         std::vector<std::uint32_t> run;  ///< how many columns up to this one have the same open set
@@ -70,7 +71,9 @@ private:
     Block block_at(int first_col, int end_col, int begin, int end);
     void reuse_rows(int begin, int end);
     void collect_states(int row, int index);
-    void append(const StateRow& row);
+    void append_rows(int begin, int end);
+    void append(const StateRow& row, std::size_t column, std::size_t place, std::size_t node);
+    std::uint32_t node_count(const PlaceStates& place) const;
     void find_open_nodes(int row);
     void join_open(int row);
     void find_open_sets(int row);

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <tuple>
 
 namespace spawnfield {
@@ -21,74 +23,147 @@ std::array<int, 2> headings_around(double yaw)
     return {nearest, lattice_heading(nearest, ahead_of_it(nearest) > 0 ? -1 : 1)};
 }
 
-}  // namespace
+constexpr std::size_t part = 1 << 16;  // nodes or places
 
-/// Numbers the sets of nodes, and adds up their places.
-void ReachGraph::Impl::find_islands(DisjointSets& nodes)
+std::size_t part_count(std::size_t count) { return (count + part - 1) / part; }
+
+/// Calls visit(begin, end) for parts of `count` items, on some threads.
+template <class Visit>
+void in_parts(std::size_t count, int threads, const Visit& visit)
 {
-    const std::size_t count = first_node.back();
-    node_islands.resize(count);  // first the smallest node of each set
-    constexpr std::size_t part = 1 << 16;
-    parallel_for((count + part - 1) / part, options.threads, {}, [&](std::size_t k) {
-        for (std::size_t node = k * part; node < std::min(count, (k + 1) * part); ++node)
-            node_islands[node] = nodes.find(std::uint32_t(node));
-    });
-    std::vector<std::uint32_t> sizes(count, 0);  // later the numbers of the islands
-    for (std::size_t p = 0; p < ground.size(); ++p) for_each_island(p, [&](std::uint32_t root) { ++sizes[root]; });
-    std::vector<std::uint32_t> roots;
-    for (std::uint32_t node = 0; node < count; ++node)
-        if (sizes[node] > 0) roots.push_back(node);
-    std::stable_sort(roots.begin(), roots.end(), [&](std::uint32_t a, std::uint32_t b) { return sizes[a] > sizes[b]; });
-    islands.clear();
-    for (const std::uint32_t root : roots) {
-        islands.push_back(
-            {.area = sizes[root] * grid.step * grid.step, .share = double(sizes[root]) / double(ground.size())});
-        sizes[root] = std::uint32_t(islands.size() - 1);
-    }
-    for (std::uint32_t& island : node_islands) island = sizes[island];
-    set_places();
+    parallel_for(part_count(count), threads, {},
+                 [&](std::size_t k) { visit(k * part, std::min(count, (k + 1) * part)); });
 }
 
-/// Sets the heights of each island, and its place: the one nearest to the middle of all of its places; of equally near
-/// ones, the first.
-void ReachGraph::Impl::set_places()
+}  // namespace
+
+/// Numbers the sets of nodes, the one with most places first, and adds up their places.
+void ReachGraph::Impl::find_islands(DisjointSets& nodes)
 {
-    const double infinity = std::numeric_limits<double>::infinity();
-    std::vector<Eigen::Vector2d> middles(islands.size(), Eigen::Vector2d::Zero());
-    std::vector<std::uint32_t> counts(islands.size(), 0);
-    for (Island& island : islands) island.low = infinity, island.high = -infinity;
-    for_each_place(0, grid.rows, [&](std::size_t p, double x, double y) {
-        for_each_island(p, [&](std::uint32_t i) {
-            islands[i].low = std::min(islands[i].low, ground[p]);
-            islands[i].high = std::max(islands[i].high, ground[p]);
-            middles[i] += Eigen::Vector2d(x, y);
-            ++counts[i];
+    const std::vector<std::uint32_t> roots = find_roots(nodes);
+    const std::vector<std::uint32_t> sizes = number_sets(roots);
+    std::vector<std::uint32_t> order(roots.size()), numbers(roots.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return sizes[a] > sizes[b]; });
+    islands.clear();
+    for (const std::uint32_t set : order) {
+        numbers[set] = std::uint32_t(islands.size());
+        islands.push_back(
+            {.area = sizes[set] * grid.step * grid.step, .share = double(sizes[set]) / double(ground.size())});
+    }
+    if (!std::is_sorted(order.begin(), order.end()))
+        in_parts(node_islands.size(), options.threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t node = begin; node < end; ++node) node_islands[node] = numbers[node_islands[node]];
+        });
+    set_places(set_heights());
+}
+
+/// Sets node_islands to the smallest node of each node's set. Returns these, in ascending order.
+std::vector<std::uint32_t> ReachGraph::Impl::find_roots(DisjointSets& nodes)
+{
+    node_islands.resize(first_node.back());
+    std::vector<std::vector<std::uint32_t>> of_parts(part_count(node_islands.size()));
+    in_parts(node_islands.size(), options.threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t node = begin; node < end; ++node) {
+            node_islands[node] = nodes.find(std::uint32_t(node));
+            if (node_islands[node] == node) of_parts[begin / part].push_back(std::uint32_t(node));
+        }
+    });
+    std::vector<std::uint32_t> out;
+    for (const std::vector<std::uint32_t>& roots : of_parts) out.insert(out.end(), roots.begin(), roots.end());
+    return out;
+}
+
+/// Replaces the smallest node of a set by its index in `roots`. Returns the number of places of each set.
+std::vector<std::uint32_t> ReachGraph::Impl::number_sets(const std::vector<std::uint32_t>& roots)
+{
+    PerThread<std::vector<std::uint32_t>> sizes_of_threads{std::vector<std::uint32_t>(roots.size())};
+    in_parts(ground.size(), options.threads, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t>& sizes = sizes_of_threads.local();
+        std::size_t set = 0;  // most nodes have that of the one before
+        for (std::size_t place = begin; place < end; ++place) {
+            for (std::size_t node = first_node[place]; node < first_node[place + 1]; ++node) {
+                const std::uint32_t root = node_islands[node];
+                if (roots[set] != root)
+                    set = std::size_t(std::lower_bound(roots.begin(), roots.end(), root) - roots.begin());
+                node_islands[node] = std::uint32_t(set);
+            }
+            for_each_island(place, [&](std::uint32_t island) { ++sizes[island]; });
+        }
+    });
+    std::vector<std::uint32_t> out(roots.size(), 0);
+    for (const std::vector<std::uint32_t>& sizes : sizes_of_threads)
+        std::transform(sizes.begin(), sizes.end(), out.begin(), out.begin(), std::plus<>());
+    return out;
+}
+
+/// Calls visit(of_islands[i], i, place, col, row) for each place on island i, on some threads: `of_threads` has a
+/// vector `of_islands` for each of them.
+template <class OfThreads, class Visit>
+void ReachGraph::Impl::visit_islands(OfThreads& of_threads, const Visit& visit) const
+{
+    constexpr int rows = 64;  // that a thread looks at together
+    parallel_for(std::size_t((grid.rows + rows - 1) / rows), options.threads, {}, [&](std::size_t k) {
+        auto& of_islands = of_threads.local();
+        for_each_place(int(k) * rows, std::min(grid.rows, int(k + 1) * rows), [&](std::size_t p, int col, int row) {
+            for_each_island(p, [&](std::uint32_t i) { visit(of_islands[i], i, p, col, row); });
         });
     });
-    for (std::size_t i = 0; i < islands.size(); ++i) middles[i] /= counts[i];
+}
+
+/// Sets the heights of each island. Returns the middle of all of its places, in columns and rows. Sums of whole numbers
+/// do not depend on the order in which threads add them.
+std::vector<Vec2> ReachGraph::Impl::set_heights()
+{
+    struct Sums {
+        double low = std::numeric_limits<double>::infinity(), high = -low;  ///< m
+        std::uint64_t cols = 0, rows = 0, count = 0;                        ///< of all places
+    };
+    PerThread<std::vector<Sums>> of_threads{std::vector<Sums>(islands.size())};
+    visit_islands(of_threads, [&](Sums& sums, std::uint32_t, std::size_t p, int col, int row) {
+        sums.low = std::min(sums.low, ground[p]);
+        sums.high = std::max(sums.high, ground[p]);
+        sums.cols += std::uint64_t(col);
+        sums.rows += std::uint64_t(row);
+        ++sums.count;
+    });
+    std::vector<Vec2> out;
+    for (std::size_t i = 0; i < islands.size(); ++i) {
+        Sums all;
+        for (const std::vector<Sums>& of_islands : of_threads) {
+            all.low = std::min(all.low, of_islands[i].low);
+            all.high = std::max(all.high, of_islands[i].high);
+            all.cols += of_islands[i].cols;
+            all.rows += of_islands[i].rows;
+            all.count += of_islands[i].count;
+        }
+        islands[i].low = all.low;
+        islands[i].high = all.high;
+        out.emplace_back(double(all.cols) / double(all.count), double(all.rows) / double(all.count));
+    }
+    return out;
+}
+
+/// Sets the place of each island: the one nearest to the middle of all of its places; of equally near ones, the first.
+void ReachGraph::Impl::set_places(std::span<const Vec2> middles)
+{
     struct Nearest {
-        double distance = std::numeric_limits<double>::infinity();  ///< from the middle, m
+        double square = std::numeric_limits<double>::infinity();  ///< of the distance from the middle, in columns
         std::size_t place = 0;
-        Vec3 at = Vec3::Zero();
+        int col = 0, row = 0;
     };
     const auto take = [](Nearest& best, const Nearest& other) {
-        if (std::tie(other.distance, other.place) < std::tie(best.distance, best.place)) best = other;
+        if (std::tie(other.square, other.place) < std::tie(best.square, best.place)) best = other;
     };
-    PerThread<std::vector<Nearest>> nearest_of_threads(std::vector<Nearest>(islands.size()));
-    constexpr int part = 64;  // rows
-    parallel_for(std::size_t((grid.rows + part - 1) / part), options.threads, {}, [&](std::size_t k) {
-        std::vector<Nearest>& nearest = nearest_of_threads.local();
-        for_each_place(int(k) * part, std::min(grid.rows, int(k + 1) * part), [&](std::size_t p, double x, double y) {
-            for_each_island(p, [&](std::uint32_t i) {
-                const double distance = (Eigen::Vector2d(x, y) - middles[i]).norm();
-                if (distance <= nearest[i].distance) take(nearest[i], {distance, p, {x, y, ground[p]}});
-            });
-        });
+    PerThread<std::vector<Nearest>> of_threads{std::vector<Nearest>(islands.size())};
+    visit_islands(of_threads, [&](Nearest& nearest, std::uint32_t i, std::size_t p, int col, int row) {
+        take(nearest, {(Vec2(col, row) - middles[i]).squaredNorm(), p, col, row});
     });
-    std::vector<Nearest> nearest(islands.size());
-    for (const std::vector<Nearest>& of_thread : nearest_of_threads)
-        for (std::size_t i = 0; i < islands.size(); ++i) take(nearest[i], of_thread[i]);
-    for (std::size_t i = 0; i < islands.size(); ++i) islands[i].place = nearest[i].at;
+    for (std::size_t i = 0; i < islands.size(); ++i) {
+        Nearest nearest;
+        for (const std::vector<Nearest>& of_islands : of_threads) take(nearest, of_islands[i]);
+        islands[i].place = {grid.x_of(nearest.col), grid.y_of(nearest.row), ground[nearest.place]};
+    }
 }
 
 std::optional<std::size_t> ReachGraph::Impl::island_of(const SettledPose& pose) const

@@ -143,6 +143,7 @@ LevelGround::LevelGround(const Judge::Impl& shared) : shared_(shared)
         !contains(footprint_, Vec2::Zero()))
         return;
     flatness_ = largest_flatness(depth_in(convex_hull(std::move(support)), mass_.head<2>()));
+    for (int heading = 0; heading < lattice_headings; ++heading) at_headings_.push_back(turned(lattice_yaw(heading)));
 }
 
 /// Returns the largest difference between ground and plane for which the proof holds, m; 0 if there is none. `margin`:
@@ -303,24 +304,28 @@ void LevelGround::find_ends(const Solid& solid)
     }
 }
 
-bool LevelGround::stands(double yaw) const
+LevelGround::Turned LevelGround::turned(double yaw) const
 {
-    if (obstacles_.empty() && ends_.empty()) return true;
     const Eigen::Matrix2d rotation = rotation_from_rpy(0, 0, yaw).topLeftCorner<2, 2>();
-    const Polygon2 footprint = rotated(footprint_, rotation);
-    const auto is_apart = [&](const Outline& outline) { return are_apart(outline.span(), footprint, gap_); };
-    if (!std::all_of(obstacles_.begin(), obstacles_.end(), is_apart)) return false;
-    return std::all_of(ends_.begin(), ends_.end(), is_apart) || stands_at_end(footprint, rotation);
+    Turned out{.footprint = rotated(footprint_, rotation), .feet = {}, .mass = rotation * mass_.head<2>()};
+    for (const Polygon2& foot : feet_) out.feet.push_back(rotated(foot, rotation));
+    return out;
+}
+
+bool LevelGround::stands(const Turned& robot) const
+{
+    const auto is_apart = [&](const Outline& outline) { return are_apart(outline.span(), robot.footprint, gap_); };
+    return std::all_of(obstacles_.begin(), obstacles_.end(), is_apart) &&
+           (std::all_of(ends_.begin(), ends_.end(), is_apart) || stands_at_end(robot));
 }
 
 /// Returns whether the robot stands on the ground on the near sides of all ends below its footprint. There is ground at
 /// its origin, and none of the ends lies between this and any other point there.
-bool LevelGround::stands_at_end(const Polygon2& footprint, const Eigen::Matrix2d& rotation) const
+bool LevelGround::stands_at_end(const Turned& robot) const
 {
-    std::vector<Polygon2> feet;
-    for (const Polygon2& foot : feet_) feet.push_back(rotated(foot, rotation));
+    std::vector<Polygon2> feet = robot.feet;
     for (const Outline& end : ends_) {
-        if (are_apart(end.span(), footprint, gap_)) continue;
+        if (are_apart(end.span(), robot.footprint, gap_)) continue;
         const Vec2 outward = edge_normal(end[0], end[1]).normalized();
         const double distance = outward.dot(end[0]) - gap_;
         if (distance <= 0) return false;
@@ -328,8 +333,7 @@ bool LevelGround::stands_at_end(const Polygon2& footprint, const Eigen::Matrix2d
     }
     Polygon2 support;
     for (const Polygon2& foot : feet) support.insert(support.end(), foot.begin(), foot.end());
-    const Vec2 mass = rotation * mass_.head<2>();
-    const double flatness = largest_flatness(depth_in(convex_hull(std::move(support)), mass));
+    const double flatness = largest_flatness(depth_in(convex_hull(std::move(support)), robot.mass));
     return flatness > 0 && unevenness_ <= flatness;
 }
 

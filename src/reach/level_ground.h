@@ -3,6 +3,7 @@
 #include "base/polygon2.h"
 #include "base/rect.h"
 #include "geometry/tile_tree.h"
+#include "reach/lattice.h"
 
 #include <spawnfield/judge.h>
 
@@ -55,7 +56,9 @@ public:
     /// The same without ends.
     bool is_open() const { return is_clear_ && !has_ends_; }
     /// Returns whether the robot stands at a yaw, as far as the geometry decides. False: not proven.
-    bool stands(double yaw) const;
+    bool stands(double yaw) const { return has_nothing_near() || stands(turned(yaw)); }
+    /// The same at a heading of the drivable graph.
+    bool stands_at(int heading) const { return has_nothing_near() || stands(at_headings_[std::size_t(heading)]); }
     /// Returns the height of its origin, m.
     double z() const { return height_ - lowest_; }
 
@@ -78,18 +81,28 @@ private:
         double middle = 0;      ///< height of that plane at the place, m
         double steepness = 0;   ///< its slope
     };
+    /// Of the robot at a yaw.
+    struct Turned {
+        Polygon2 footprint;
+        std::vector<Polygon2> feet;
+        Vec2 mass;
+    };
+    Turned turned(double yaw) const;
+    bool has_nothing_near() const { return obstacles_.empty() && ends_.empty(); }
+    bool stands(const Turned& robot) const;
+    bool stands_at_end(const Turned& robot) const;
     Solid triangle(const std::array<Vec3, 3>& corners, bool is_terrain) const;
     Solid primitive(const Shape& shape, bool is_terrain) const;
     double largest_flatness(double margin) const;
     double unevenness_of(const Solid& solid) const;
     void find_ends(const Solid& solid);
     void add_near(std::vector<Outline>& list, const Outline& outline, const Rect& box) const;
-    bool stands_at_end(const Polygon2& footprint, const Eigen::Matrix2d& rotation) const;
 
     const Judge::Impl& shared_;
     Polygon2 footprint_;               ///< outline of the robot, seen from above, in its frame
     std::vector<Polygon2> feet_;       ///< lowest points of each part that has some, with 1 or more corners
     Vec3 mass_ = Vec3::Zero();         ///< centre of mass, in the robot's frame
+    std::vector<Turned> at_headings_;  ///< for each heading of the drivable graph
     double lowest_ = 0, highest_ = 0;  ///< of the robot's points, in its frame, m
     double flatness_ = 0;              ///< m; 0: nothing can be proven
     double gap_ = 0;                   ///< m; what is farther than this from the footprint does not meet the robot

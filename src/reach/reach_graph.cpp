@@ -10,6 +10,7 @@
 #include <spawnfield/error.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -104,12 +105,18 @@ ReachGraph::Impl::Impl(const Judge& judge_, const ReachOptions& options_, Keep k
 
 std::string ReachGraph::Impl::bytes() const
 {
+    std::array<BinaryWriter, 5> arrays;
+    parallel_for(arrays.size(), options.threads, {}, [&](std::size_t k) {
+        switch (k) {
+        case 0: return arrays[k].put_runs(counts_of(first));
+        case 1: return arrays[k].put_runs(ground);
+        case 2: return arrays[k].put_runs(valid);
+        case 3: return arrays[k].put_runs(counts_of(first_node));
+        default: return arrays[k].put_runs(node_islands);
+        }
+    });
     BinaryWriter out;
-    out.put_runs(counts_of(first));
-    out.put_runs(ground);
-    out.put_runs(valid);
-    out.put_runs(counts_of(first_node));
-    out.put_runs(node_islands);
+    for (BinaryWriter& array : arrays) out.put_all(std::move(array));
     out.put(std::uint64_t(islands.size()));
     for (const Island& island : islands)
         for (const double value :
@@ -204,10 +211,11 @@ std::vector<ReachPlace> ReachGraph::places() const
 {
     std::vector<ReachPlace> out;
     out.reserve(impl_->ground.size());
-    impl_->for_each_place([&](std::size_t p, double x, double y) {
+    impl_->for_each_place([&](std::size_t p, int col, int row) {
         const std::uint32_t begin = impl_->first_node[p], end = impl_->first_node[p + 1];
         const auto nodes = std::span(impl_->node_islands).subspan(begin, end - begin);
-        out.push_back({x, y, impl_->ground[p], *std::min_element(nodes.begin(), nodes.end())});
+        out.push_back({impl_->grid.x_of(col), impl_->grid.y_of(row), impl_->ground[p],
+                       *std::min_element(nodes.begin(), nodes.end())});
     });
     return out;
 }

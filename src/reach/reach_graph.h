@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -79,7 +80,7 @@ struct ReachGraph::Impl {
         return valid[place] == all && first_node[place + 1] == first_node[place] + 1;
     }
 
-    /// Calls visit(place, x, y) for each place, in their order.
+    /// Calls visit(place, col, row) for each place, in their order.
     template <class Visit>
     void for_each_place(const Visit& visit) const
     {
@@ -92,7 +93,7 @@ struct ReachGraph::Impl {
         std::size_t p = first[column_of(0, begin)];
         for (int row = begin; row < end; ++row)
             for (int col = 0; col < grid.cols; ++col)
-                for (; p < first[column_of(col, row) + 1]; ++p) visit(p, grid.x_of(col), grid.y_of(row));
+                for (; p < first[column_of(col, row) + 1]; ++p) visit(p, col, row);
     }
 
     /// Calls visit(island) once for each island on which the robot stands at a place at one heading or more.
@@ -111,7 +112,12 @@ private:
     Impl(const Judge& judge_, const ReachOptions& options_, Keep keep_, Empty);  ///< makes a graph without places
     std::optional<std::size_t> place_near(const SettledPose& pose, int col, int row, int heading) const;
     void find_islands(DisjointSets& nodes);
-    void set_places();
+    std::vector<std::uint32_t> find_roots(DisjointSets& nodes);
+    std::vector<std::uint32_t> number_sets(const std::vector<std::uint32_t>& roots);
+    template <class OfThreads, class Visit>
+    void visit_islands(OfThreads& of_threads, const Visit& visit) const;
+    std::vector<Vec2> set_heights();
+    void set_places(std::span<const Vec2> middles);
     bool is_consistent() const;
     bool are_ways_inside() const;
     bool are_ways_inside(int col, int row) const;

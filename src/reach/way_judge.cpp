@@ -108,7 +108,7 @@ void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out, Detail
         PlaceDetails& known = details.emplace_back();
         for (int heading = 0; heading < lattice_headings; ++heading) {
             StatePose& state = known.poses[std::size_t(heading)];
-            if (is_level && level_.stands(lattice_yaw(heading))) {
+            if (is_level && level_.stands_at(heading)) {
                 state = {.z = level_.z(), .is_exact = false};
             } else {
                 const SettledPose pose = stand_.judge(column, {at.x(), at.y(), height}, lattice_yaw(heading));
