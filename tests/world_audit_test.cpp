@@ -122,7 +122,8 @@ TEST_CASE("rules are kept or broken, with value and limit")
     report.poses = {{"in", {{0, 0, 0.1}}}, {"wall", {{1, 0, 0.1}}}};
     report.robots = {audit_robot({report.map, cube(), {}}, {.poses = report.poses})};
     report.parts.overlaps.resize(2);
-    report.parts.floating.resize(1);
+    report.parts.floating.resize(7);
+    for (FloatingProps& floating : report.parts.floating) floating.props = {"lamp"};
     const AuditRules rules{.min_free_area = 1000,
                            .max_islands = 1,
                            .max_closed_rooms = 1,
@@ -139,8 +140,8 @@ TEST_CASE("rules are kept or broken, with value and limit")
     CHECK(broken[0].ends_with(" m2, at least 1000 m2 are needed"));
     CHECK(broken[1] == "2 islands of cube, at most 1 is allowed");
     CHECK(broken[2].starts_with("wall, cube: off_terrain: it comes to rest on east"));
-    CHECK(broken[3] == "1 floating prop, at most 0 are allowed");
-    CHECK(broken[4] == "2 missing files, at most 1 is allowed");
+    CHECK(broken[3] == "7 floating props, at most 0 are allowed: lamp; lamp; lamp; lamp; lamp; …");
+    CHECK(broken[4] == "2 missing files, at most 1 is allowed: a; b");
     CHECK(kept == std::vector<std::string>{"1 closed room of cube, at most 1 is allowed", "in, cube: valid",
                                            "2 overlaps, at most 2 are allowed",
                                            "0 sunken props, at most 0 are allowed"});
@@ -197,7 +198,9 @@ TEST_CASE("a broken rule ends audit with status 3 and its name, and a kept one w
     CHECK(broken.out.empty());
     CHECK(broken.err.find("spawnfield: 2 of 4 rules are broken:\n  require: <in> \"crate\", box:0.3,0.3,0.3: "
                           "off_terrain: it comes to rest on crate_a") != std::string::npos);
-    CHECK(broken.err.ends_with("\n  max_floating: 1 floating prop, at most 0 are allowed\n"));
+    CHECK(
+        broken.err.ends_with("\n  max_floating: 1 floating prop, at most 0 are allowed: "
+                             "<script>alert(1)</script>\n"));
     CHECK(bytes_of(world.folder / "out.txt").find("rules: 2 of 4 broken\n") != std::string::npos);
     CHECK(world.with_rules("max_floating: 1\nmax_islands: 5\nrequire: [good, [0, -1.5, 0.1, 1]]\n").status == 0);
     const ProgramRun allowed = world.with_rules(

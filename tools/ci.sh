@@ -28,7 +28,10 @@ golden() {
     tests/golden/check.sh "$PWD/build/$1/bin" "$PWD" "$PWD/build/$1/golden"
 }
 
-asan() { tools/build.sh asan && ctest --preset asan -j "$(nproc)" --no-label-summary; }
+asan() {
+  tools/build.sh asan -DSPAWNFIELD_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/python/bin/python" &&
+    ctest --preset asan -j "$(nproc)" --no-label-summary
+}
 
 tsan() {
   tools/build.sh tsan spawnfield_tests spawnfield_worlds && ctest --preset tsan -j "$(nproc)" --label-regex threads

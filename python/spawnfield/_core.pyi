@@ -1,7 +1,7 @@
 """The commands of spawnfield, for the package `spawnfield`."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Annotated
+from typing import Annotated, overload
 
 import numpy
 from numpy.typing import NDArray
@@ -90,7 +90,11 @@ class FoundVerdicts:
 
     def reason(self, arg: int, /) -> str: ...
 
+    @overload
     def csv(self) -> bytes: ...
+
+    @overload
+    def csv(self, arg: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], /) -> bytes: ...
 
 def commands() -> dict: ...
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from . import commands
+from .errors import NotValid
 from .robot import Robot
 from .scene import scene_of
 from .world import File, World, bake, poses_word, robot_word
@@ -98,8 +99,13 @@ def spawn_ok(world: World | File, robot: Robot | File, poses: Any, **options: An
     Raises:
         NotValid: an AssertionError that names each pose that is not valid, and the reason.
     """
+    __tracebackhide__ = True  # pytest shows the line of the test
     if not isinstance(world, World):
         world = bake(world)
     if "stance" not in options and "settle" not in options:
         options["settle"] = True
-    world.check(robot, poses, require_valid=True, **options)
+    try:
+        world.check(robot, poses, require_valid=True, **options)
+    except NotValid as error:
+        message = str(error).removeprefix("--require-valid: ")
+        raise NotValid(message, error.verdicts) from None

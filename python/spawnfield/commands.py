@@ -20,6 +20,16 @@ from .errors import ArgumentError, translated
 
 logger = logging.getLogger("spawnfield")
 
+_known_notices: set[str] = set()
+
+
+def log_notice(text: str) -> None:
+    """Logs a notice as a warning. The same notice again is only information, so that loops do not repeat it."""
+    logger.log(logging.INFO if text in _known_notices else logging.WARNING, "%s", text)
+    if len(_known_notices) >= 1000:  # notices with ever new numbers
+        _known_notices.clear()
+    _known_notices.add(text)
+
 
 @functools.cache
 def options_of(command: str) -> dict[str, dict[str, Any]]:
@@ -59,7 +69,11 @@ def words_of(name: str, option: Mapping[str, Any], value: Any) -> list[str]:
         raise ArgumentError(f"{flag} needs True or False, not {value!r}")
     if value is True:
         raise ArgumentError(f"{flag} needs a value, not True")
+    if hasattr(value, "to_csv") or getattr(value, "ndim", 0) > 1:
+        raise ArgumentError(f"{flag} needs the name of a file, not {type(value).__name__}; write it with to_csv()")
     if isinstance(value, list) and option["repeatable"]:
+        if value and all(isinstance(item, (int, float)) for item in value):
+            raise ArgumentError(f"{flag}: a list repeats the option; one value is a tuple, {tuple(value)}")
         return [word for item in value for word in words_of(name, option, item)]
     if option["values"] == 2:  # NAME LOW:HIGH
         if isinstance(value, str) or len(value) != 2:
@@ -139,7 +153,7 @@ def run(
     wants_text: bool = False,
     progress: bool | None = None,
 ) -> Outcome:
-    """Runs a command. Notices are logged to the logger ``spawnfield`` as warnings.
+    """Runs a command. Notices are logged to the logger ``spawnfield``, see `log_notice`.
 
     Args:
         command: its name.
@@ -155,7 +169,7 @@ def run(
         if kind == "complaint":
             complaints.append(text)
         else:
-            logger.warning("%s", text)
+            log_notice(text)
 
     bar = progress_bar(progress)
     try:

@@ -10,14 +10,24 @@ from typing import Any
 
 import numpy as np
 
-from .errors import ArgumentError
+from .errors import ArgumentError, FileError
 from .robot import Robot
 from .world import World
 
 #: Spawns that are made at once: few at first, so that the first draw waits for little, then twice as many each time.
 _FIRST_CHUNK, _LAST_CHUNK = 1 << 11, 1 << 15
 
+#: Columns of a pose for each order of its quaternion.
+_QUATERNIONS: dict[str, list[int] | None] = {"xyzw": None, "wxyz": [0, 1, 2, 6, 3, 4, 5]}
+
 _in_work: set[Pool] = set()
+
+
+def _order_of(quaternion: str) -> list[int] | None:
+    if quaternion not in _QUATERNIONS:
+        raise ArgumentError(f"--quaternion is {quaternion!r}, needs one of {', '.join(_QUATERNIONS)}")
+    return _QUATERNIONS[quaternion]
+
 
 
 @atexit.register
@@ -44,7 +54,11 @@ class Pool:
         seed: of the spawns and of the draws.
         pairs: the rows are pairs with columns ``start`` and ``goal`` in place of ``pose``.
         background: False: the constructor returns when all spawns are there.
+        quaternion: "xyzw" or "wxyz" (as of MuJoCo and Isaac Lab 2): the order in the poses of draws. `columns` and
+            files always have x, y, z, w.
         **options: those of ``World.sample``, for example ``columns="clearance"``. The default of ``yaw`` is "random".
+            Rows keep no distance from each other; `draw` has a ``min_distance``. Pairs need the drivable graph of the
+            world, which may take minutes when it is made first; ``reach_step`` makes it coarser (docs/reach.md).
 
     Raises:
         ArgumentError: an argument is wrong, or a world has no valid pose. Faults of the background are raised by the
@@ -53,15 +67,20 @@ class Pool:
 
     def __init__(
         self, world: World | Sequence[World], robot: Robot | Sequence[Robot], size: int, *, seed: int = 0,
-        pairs: bool = False, background: bool = True, **options: Any,
+        pairs: bool = False, background: bool = True, quaternion: str = "xyzw", **options: Any,
     ) -> None:  # fmt: skip
+        self._order = _order_of(quaternion)
         worlds = [world] if isinstance(world, World) else list(world)
         robots = list(robot) if isinstance(robot, (list, tuple)) else [robot] * len(worlds)
         if len(robots) != len(worlds):
             raise ArgumentError(f"--robot: there are {len(robots)} robots for {len(worlds)} worlds")
         if size < 1:
             raise ArgumentError(f"--size is {size}, needs >= 1")
-        options = {"yaw": "random", "quiet": True, **options}
+        if given := [name for name in ("count", "pairs", "fill", "fleet") if name in options]:
+            raise ArgumentError(f"--{given[0]} is not an option of a pool, which has a size")
+        if options.get("min_distance"):
+            raise ArgumentError("--min-distance: the rows of a pool keep no distance; give it to draw()")
+        options = {"yaw": "random", **options}
         self._pose = "start" if pairs else "pose"
         self._decks = [_Deck(size, seed, k) for k in range(len(worlds))]
         self._changed = threading.Condition()
@@ -76,15 +95,19 @@ class Pool:
             self.wait()
 
     @classmethod
-    def from_columns(cls, columns: Mapping[str, np.ndarray], *, seed: int | None = None) -> Pool:
+    def from_columns(
+        cls, columns: Mapping[str, np.ndarray], *, seed: int | None = None, quaternion: str = "xyzw"
+    ) -> Pool:
         """Returns a pool of given rows, for example those of `save`.
 
         Args:
             columns: arrays of equal length, as of `columns`: ``pose``, or ``start`` and ``goal``, of shape (n, 7), and
                 any others. ``world`` is optional.
             seed: the rows are drawn in the given order, or with a seed in the order of `restart`.
+            quaternion: of draws, as for a new pool.
         """
         pool = cls.__new__(cls)
+        pool._order = _order_of(quaternion)
         pool._pose = "pose" if "pose" in columns else "start"
         world = np.asarray(columns.get("world", np.zeros(len(columns[pool._pose]), np.int64)))
         pool._decks = []
@@ -155,6 +178,8 @@ class Pool:
             ArgumentError: the weights have another length, or one of them is negative or NaN.
         """
         self.wait()
+        if isinstance(weights, str) and weights not in self.columns:
+            raise ArgumentError(f"--weights: the pool has no column {weights!r}; it has {', '.join(self.columns)}")
         if weights is not None and not isinstance(weights, np.ndarray):
             weights = self.columns[weights] if isinstance(weights, str) else np.asarray(weights(self.columns))
         if weights is not None and (weights.shape != (len(self),) or not (weights >= 0).all()):
@@ -172,8 +197,8 @@ class Pool:
         Args:
             which: how many; or a mask, (environments,) bool, of the environments that reset.
             out: (environments, 7) array or torch tensor on any device, in which the rows of the mask get their pose:
-                x, y, z (m) and a quaternion x, y, z, w. With a tensor, the pool keeps a copy of the poses on its
-                device.
+                x, y, z (m) and a quaternion in the pool's order; of pairs, the start. With a tensor, the pool keeps a
+                copy of the poses on its device.
             world: index of the world; with a mask, one for each environment; otherwise one for each row. Default: 0.
             min_distance: m between any two poses of this draw in the same world. Rows that are too near are not lost;
                 they stay for later draws.
@@ -182,7 +207,8 @@ class Pool:
             The drawn rows, with all columns.
 
         Raises:
-            ArgumentError: a world has fewer rows than are drawn at once, or not enough of them are apart.
+            ArgumentError: a world has fewer rows than are drawn at once; not enough of them are apart; or an argument
+                is wrong.
         """
         rows = None
         if isinstance(which, (int, np.integer)):
@@ -193,8 +219,10 @@ class Pool:
                 raise ArgumentError("--mask needs an array of shape (environments,) of bool")
             rows = np.flatnonzero(mask)
             count = len(rows)
-        if out is not None and rows is None:
-            rows = np.arange(count)
+        if out is not None:
+            rows = np.arange(count) if rows is None else rows
+            if out.ndim != 2 or out.shape[1] != 7:
+                raise ArgumentError(f"--out has the shape {tuple(out.shape)}, needs (environments, 7)")
         if len(self._decks) == 1 or world is None or isinstance(world, (int, np.integer)):
             k = int(world) if isinstance(world, (int, np.integer)) else 0
             number = np.full(count, k) if k else np.zeros(count, np.int64)
@@ -206,7 +234,7 @@ class Pool:
             index = np.empty(count, np.int64)
             for k in np.unique(number):
                 index[number == k] = self._take(int(k), int((number == k).sum()), min_distance)
-        drawn = Draw(self._decks, number, index)
+        drawn = Draw(self._decks, number, index, self._order)
         if out is not None:
             self._fill(out, rows, drawn)
         return drawn
@@ -222,14 +250,23 @@ class Pool:
         write_bytes(data.getvalue(), file)
 
     @classmethod
-    def load(cls, file: str | os.PathLike[str], *, seed: int | None = None) -> Pool:
+    def load(cls, file: str | os.PathLike[str], *, seed: int | None = None, quaternion: str = "xyzw") -> Pool:
         """Returns the pool of a file that `save` has written. Draws begin anew, in the order of the rows, or with a
-        seed in that of `restart`.
+        seed in that of `restart`. `quaternion` is that of draws, as for a new pool.
 
         Processes that read the same file draw different rows if they have different seeds.
+
+        Raises:
+            FileError: the file is missing, or is not the file of a pool.
         """
-        with np.load(file, allow_pickle=False) as columns:
-            return cls.from_columns(dict(columns), seed=seed)
+        try:
+            with np.load(file, allow_pickle=False) as columns:
+                rows = dict(columns)
+        except (OSError, ValueError, AttributeError) as error:  # also if it is another kind of file
+            raise FileError(f"{os.fspath(file)}: the pool cannot be read: {error}") from None
+        if not ("pose" in rows or {"start", "goal"} <= rows.keys()):
+            raise FileError(f"{os.fspath(file)}: is not the file of a pool; it has no array pose, or start and goal")
+        return cls.from_columns(rows, seed=seed, quaternion=quaternion)
 
     def _take(self, k: int, count: int, min_distance: float) -> np.ndarray:
         if not 0 <= k < len(self._decks):
@@ -267,6 +304,7 @@ class Pool:
         key = (out.device, out.dtype)
         if key not in self._tensors:
             poses = np.concatenate([deck.rows()[self._pose] for deck in self._decks])
+            poses = poses if self._order is None else poses[:, self._order]
             self._tensors[key] = torch.as_tensor(poses).to(out.device, out.dtype)
         first = np.cumsum([0, *(deck.size for deck in self._decks)])
         out[places] = self._tensors[key][torch.as_tensor(first[drawn.world] + drawn.index).to(out.device)]
@@ -309,8 +347,11 @@ class Draw:
         index: (n,) int64, row of the pool in this world.
     """
 
-    def __init__(self, decks: Sequence["_Deck"], world: np.ndarray, index: np.ndarray) -> None:
+    def __init__(
+        self, decks: Sequence["_Deck"], world: np.ndarray, index: np.ndarray, order: list[int] | None = None
+    ) -> None:
         self._decks = decks
+        self._order = order
         self.world = world
         self.index = index
 
@@ -319,6 +360,10 @@ class Draw:
 
     def column(self, name: str) -> np.ndarray:
         """Returns a column of these rows, for example "pose"."""
+        values = self._values(name)
+        return values[:, self._order] if self._order and name in ("pose", "start", "goal") else values
+
+    def _values(self, name: str) -> np.ndarray:
         if len(self._decks) == 1:
             return self._decks[0].buffers[name].take(self.index, axis=0)  # which is quicker than an index in brackets
         first = self._decks[0].buffers[name]
@@ -371,7 +416,7 @@ class _Deck:
         return {name: buffer[: self.made] for name, buffer in self.buffers.items()}
 
     def can_take(self, count: int) -> bool:
-        return self._next + count <= self.made or self.is_complete
+        return 0 < self.made >= self._next + count or self.is_complete
 
     def restart(self, seed: int, number: int) -> None:
         self._random = np.random.default_rng([seed, number, 1])

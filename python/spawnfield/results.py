@@ -170,7 +170,7 @@ class Pairs(Table):
     Attributes:
         start, goal: (n, 7) float64: x, y, z in m and a quaternion x, y, z, w.
         path_length, straight, detour: (n,) float64: length of the path, m; of the straight line, m; and their ratio.
-        island: (n,) int64, its number in ``World.info(robot, islands=True)``, 1 for the largest.
+        island: (n,) int64, its number in ``World.info(robot, islands=True)``, 0 for the largest.
     """
 
     def __init__(self, found: _core.FoundPairs, summary: Mapping[str, Any]) -> None:
@@ -216,9 +216,12 @@ class Verdicts(Table):
             how far it is, m; NaN: the pose is valid, or there is none.
     """
 
-    def __init__(self, found: _core.FoundVerdicts, summary: Mapping[str, Any]) -> None:
+    def __init__(
+        self, found: _core.FoundVerdicts, summary: Mapping[str, Any], poses: np.ndarray | None = None
+    ) -> None:
         super().__init__(found.columns(), summary)
         self._found = found
+        self._poses = poses  # None: the table of the poses has their text
 
     @property
     def valid(self) -> np.ndarray:
@@ -250,7 +253,14 @@ class Verdicts(Table):
 
     def to_csv(self, file: str | os.PathLike[str] | None = None) -> bytes:
         """Returns the CSV file that ``spawnfield check`` writes, and writes it to `file` if that is given."""
-        return write_bytes(self._found.csv(), file)
+        return write_bytes(self._found.csv() if self._poses is None else self._found.csv(self._poses), file)
+
+    def to_pandas(self) -> Any:
+        """The same as for other tables, with the columns ``verdict`` (in words), ``hit`` and ``reason`` before them."""
+        frame = super().to_pandas()
+        for k, (name, values) in enumerate({"verdict": self.name, "hit": self.hit, "reason": self.reason}.items()):
+            frame.insert(k, name, values)
+        return frame
 
 
 class Raster(Table):
@@ -361,7 +371,11 @@ class Picture:
         return self.data.decode() if self.format == "svg" else None
 
     def save(self, file: str | os.PathLike[str]) -> None:
-        """Writes the file, completely or not at all. Raises OSError."""
+        """Writes the file, completely or not at all. Raises OSError, or ArgumentError if its ending is that of another
+        format."""
+        ending = Path(file).suffix.lower().lstrip(".")
+        if ending in ("png", "svg", "pdf") and ending != self.format:
+            raise ArgumentError(f'--format of the picture is "{self.format}"; make one with format="{ending}"')
         write_bytes(self.data, file)
 
     def show(self) -> None:

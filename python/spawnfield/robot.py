@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from . import _core
-from .commands import logger
+from .commands import log_notice
 from .errors import translated
 
 
@@ -47,7 +47,7 @@ class Robot:
             raise translated(error) from None
         about: dict[str, Any] = self._core.about()
         for notice in about["notices"]:
-            logger.warning("%s", notice)
+            log_notice(notice)
         self.name: str = about["name"]
         self.lower: tuple[float, ...] = tuple(about["lower"])
         self.upper: tuple[float, ...] = tuple(about["upper"])

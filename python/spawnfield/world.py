@@ -152,6 +152,7 @@ class World:
             return Pairs(outcome.result, outcome.summary)
         if isinstance(outcome.result, _core.FoundFleet):
             return Fleet(outcome.result, outcome.summary)
+        assert robot is not None  # only a fleet has none
         return Spawns(outcome.result, outcome.summary, self._settler(robot, options))
 
     def search(
@@ -200,12 +201,13 @@ class World:
             NotValid: with ``require_valid``, a pose is neither valid nor repaired.
         """
         inputs: dict[str, Any] = {}
+        numbers = None if poses is None or isinstance(poses, (str, os.PathLike)) else pose_array(poses)
         if poses is not None:
             has_text = "out" in options or "repaired" in options
-            options["poses"] = poses_word(poses, inputs, has_text)
+            options["poses"] = poses_word(poses if numbers is None else numbers, inputs, has_text)
         wants_text = options.get("pairs") is not None and "out" not in options
         outcome = self._run("check", robot, options, progress, inputs, wants_text)
-        found = outcome.text if outcome.result is None else Verdicts(outcome.result, outcome.summary)
+        found = outcome.text if outcome.result is None else Verdicts(outcome.result, outcome.summary, numbers)
         if outcome.complaint:
             raise NotValid(outcome.complaint, found)
         return found
@@ -229,14 +231,14 @@ class World:
         return Raster(outcome.result, outcome.summary, int(options.get("threads", 0)))
 
     def heatmap(
-        self, robot: Robot | File, *, format: str = "png", out: File | None = None, progress: bool | None = None,
+        self, robot: Robot | File, *, format: str | None = None, out: File | None = None, progress: bool | None = None,
         **options: Any,
     ) -> Picture:  # fmt: skip
         """Returns a picture of where the robot can stand, as ``spawnfield heatmap``.
 
         Args:
             robot: the robot.
-            format: "png", "svg" or "pdf".
+            format: "png", "svg" or "pdf"; None: that of the ending of `out`, or "png".
             out: file to write, too.
             progress: True: show progress with tqdm; None: only on a terminal, if tqdm is installed.
             **options: for example ``quantity="clearance", spawns=spawns``, which may be `Spawns`, an array of poses as
@@ -246,6 +248,9 @@ class World:
             The picture; see docs/pictures.md.
         """
         inputs: dict[str, Any] = {}
+        if format is None:
+            ending = Path(out or "").suffix.lower().lstrip(".")
+            format = ending if ending in ("svg", "pdf") else "png"
         if options.get("spawns") is not None:
             options["spawns"] = poses_word(options["spawns"], inputs, has_text=False)
         with tempfile.TemporaryDirectory(prefix="spawnfield-") as folder:
@@ -305,7 +310,7 @@ class World:
         outcome = self._run("info", robot, {**options, "json": True}, progress, wants_text=True)
         return dict(json.loads(outcome.text))
 
-    def _settler(self, robot: Robot | File | None, options: Mapping[str, Any]) -> Callable[[Spawns], Verdicts]:
+    def _settler(self, robot: Robot | File, options: Mapping[str, Any]) -> Callable[[Spawns], Verdicts]:
         """Returns a function that lets a robot down at spawns, with those options of a query that matter then."""
         kept = {name: options[name] for name in _REST_OPTIONS if name in options}
         return lambda spawns: self.check(robot, spawns, settle=True, **kept)
@@ -332,22 +337,25 @@ def robot_word(robot: Robot | File, inputs: dict[str, Any], options: Mapping[str
     return f"--robot={robot.file}"
 
 
+def pose_array(poses: Any) -> np.ndarray:
+    """Returns poses in memory as an array of shape (n, 3), (n, 4), (n, 6) or (n, 7). Raises ArgumentError."""
+    if hasattr(poses, "pose"):
+        poses = poses.pose
+    try:
+        numbers = np.ascontiguousarray(_host_array(poses), np.float64)
+    except (TypeError, ValueError) as error:  # for example rows of unequal length
+        raise ArgumentError(f"--poses is not an array of numbers: {error}") from None
+    return numbers[None, :] if numbers.ndim == 1 else numbers
+
+
 def poses_word(poses: Any, inputs: dict[str, Any], has_text: bool) -> str:
     """Returns what stands for poses in a command: the name of their file, or a name under which poses in memory are
     added to the inputs. `has_text`: the command writes them to a file."""
     if isinstance(poses, (str, os.PathLike)):
         return os.fspath(poses)
     word = "poses in memory"
-    if hasattr(poses, "pose"):
-        poses = poses.pose
     try:
-        numbers = np.ascontiguousarray(_host_array(poses), np.float64)
-    except ValueError as error:  # for example rows of unequal length
-        raise ArgumentError(f"--poses is not an array of numbers: {error}") from None
-    if numbers.ndim == 1:
-        numbers = numbers[None, :]
-    try:
-        inputs[word] = _core.poses(numbers, has_text)
+        inputs[word] = _core.poses(pose_array(poses), has_text)
     except _core.ArgumentError as error:
         raise translated(error) from None
     return word

@@ -1,5 +1,7 @@
 #include "arrays.h"
 
+#include <nanobind/stl/string.h>
+
 #include <spawnfield/error.h>
 
 #include <Eigen/Geometry>
@@ -50,6 +52,17 @@ std::vector<Pose> poses_of(const Numbers& numbers)
     out.reserve(numbers.shape(0));
     for (std::size_t row = 0; row < numbers.shape(0); ++row)
         out.push_back(pose_of({numbers.data() + row * width, width}, row));
+    return out;
+}
+
+std::vector<std::string> rows_of(const Numbers& numbers)
+{
+    std::vector<std::string> out(numbers.shape(0));
+    const std::size_t width = numbers.shape(1);
+    for (std::size_t row = 0; row < out.size(); ++row)
+        for (std::size_t k = 0; k < width; ++k)
+            out[row] += (k > 0 ? "," : "") +
+                        nb::cast<std::string>(nb::repr(nb::float_(numbers.data()[row * width + k])));
     return out;
 }
 

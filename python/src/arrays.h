@@ -9,6 +9,7 @@
 #include <initializer_list>
 #include <span>
 #include <utility>
+#include <string>
 #include <vector>
 
 namespace spawnfield::python {
@@ -42,5 +43,8 @@ using Indices = nb::ndarray<const std::int64_t, nb::c_contig, nb::device::cpu>;
 /// and a quaternion x, y, z, w, which need not have the length 1. m and rad. Throws ArgumentError for other shapes,
 /// numbers that are not finite, and quaternions of length 0.
 std::vector<Pose> poses_of(const Numbers& numbers);
+
+/// Returns the rows of a CSV file with these numbers.
+std::vector<std::string> rows_of(const Numbers& numbers);
 
 }  // namespace spawnfield::python

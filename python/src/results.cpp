@@ -92,7 +92,7 @@ nb::dict columns_of(const cli::FoundPairs& found)
     out["path_length"] = column_of(pairs, [](const StartGoal& pair) { return pair.path_length; });
     out["straight"] = column_of(pairs, [](const StartGoal& pair) { return pair.straight; });
     out["detour"] = column_of(pairs, [](const StartGoal& pair) { return pair.detour(); });
-    out["island"] = column_of(pairs, [](const StartGoal& pair) { return std::int64_t(pair.island) + 1; });
+    out["island"] = column_of(pairs, [](const StartGoal& pair) { return std::int64_t(pair.island); });
     return out;
 }
 
@@ -263,11 +263,19 @@ std::string reason_of(const cli::FoundVerdicts& found, std::size_t index)
     return reason(report, index);
 }
 
-nb::bytes csv_of(const cli::FoundVerdicts& found)
+nb::bytes csv_of(const cli::FoundVerdicts& found, const PoseTable& table)
 {
     const RepairList* const repairs = found.repairs ? &*found.repairs : nullptr;
-    return bytes_of(found.settled.empty() ? verdicts_csv(found.table, found.judgements, found.judge.map(), repairs)
-                                          : settled_csv(found.table, found.settled, found.judge, repairs));
+    return bytes_of(found.settled.empty() ? verdicts_csv(table, found.judgements, found.judge.map(), repairs)
+                                          : settled_csv(table, found.settled, found.judge, repairs));
+}
+
+/// The same for poses in memory, whose table has no rows of text.
+nb::bytes csv_of(const cli::FoundVerdicts& found, const Numbers& poses)
+{
+    PoseTable table = found.table;
+    table.rows = rows_of(poses);
+    return csv_of(found, table);
 }
 
 }  // namespace
@@ -300,7 +308,8 @@ void bind_results(nb::module_& module)
              })
         .def("contacts", &contacts_of)
         .def("reason", &reason_of)
-        .def("csv", [](const cli::FoundVerdicts& found) { return csv_of(found); });
+        .def("csv", [](const cli::FoundVerdicts& found) { return csv_of(found, found.table); })
+        .def("csv", [](const cli::FoundVerdicts& found, const Numbers& poses) { return csv_of(found, poses); });
 }
 
 }  // namespace spawnfield::python

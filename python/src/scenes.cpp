@@ -110,16 +110,10 @@ std::shared_ptr<PoseTable> table_of(const Numbers& numbers, bool has_text)
 {
     auto out = std::make_shared<PoseTable>();
     out->poses = poses_of(numbers);
-    out->rows.resize(out->poses.size());
-    const std::size_t width = numbers.shape(1);
     static const std::map<std::size_t, std::string> headers{
         {3, "x,y,z"}, {4, "x,y,z,yaw"}, {6, "x,y,z,roll,pitch,yaw"}, {7, "x,y,z,qx,qy,qz,qw"}};
-    out->header = headers.at(width);
-    if (!has_text) return out;
-    for (std::size_t row = 0; row < out->rows.size(); ++row)
-        for (std::size_t k = 0; k < width; ++k)
-            out->rows[row] += (k > 0 ? "," : "") +
-                              nb::cast<std::string>(nb::repr(nb::float_(numbers.data()[row * width + k])));
+    out->header = headers.at(numbers.shape(1));
+    out->rows = has_text ? rows_of(numbers) : std::vector<std::string>(out->poses.size());
     return out;
 }
 

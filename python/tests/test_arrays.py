@@ -189,11 +189,12 @@ def test_errors(world, robot):
         sf.bake(sf.Scene().add_box((1, 1, 1)))
 
 
-def test_notices_are_logged(world, robot, caplog):
-    with caplog.at_level(logging.WARNING, "spawnfield"):
-        assert len(world.sample(robot, 5000, min_distance=3)) < 5000
-    assert any("min-distance" in record.message for record in caplog.records)
-    caplog.clear()
+def test_notices_are_logged_as_warnings_once(world, robot, caplog):
+    for level in ("WARNING", "INFO", "INFO"):
+        with caplog.at_level(logging.INFO, "spawnfield"):
+            assert len(world.sample(robot, 5003, min_distance=3.1)) < 5003
+        assert [record.levelname for record in caplog.records if "min-distance" in record.message] == [level]
+        caplog.clear()
     world.sample(robot, 5000, min_distance=3, quiet=True)
     assert not caplog.records or "spawns were found" in caplog.text
 
@@ -285,3 +286,47 @@ def test_options_text():
     assert "min_distance" in text and "\n  settle (True)\n" in text
     with pytest.raises(sf.ArgumentError, match="there is no function smaple"):
         sf.options("smaple")
+
+
+def test_csv_of_poses_in_memory(world, robot, tmp_path):
+    spawns = world.sample(robot, 5, seed=2)
+    for poses in (spawns, [[0, 0, 0.2], [7, 7, 0.1]], np.array([[0, 0, 0.2, 0.5]])):
+        for options in ({}, {"settle": True}):
+            text = world.check(robot, poses, **options).to_csv()
+            world.check(robot, poses, out=tmp_path / "verdicts.csv", **options)
+            assert text == (tmp_path / "verdicts.csv").read_bytes()
+            assert len({line.count(b",") for line in text.splitlines()}) == 1
+
+
+def test_verdicts_in_pandas(world, robot):
+    pandas = pytest.importorskip("pandas")
+    verdicts = world.check(robot, [[0, 0, 0.2], [500, 0, 1]])
+    frame = verdicts.to_pandas()
+    assert isinstance(frame, pandas.DataFrame) and list(frame.columns[:3]) == ["verdict", "hit", "reason"]
+    assert list(frame["verdict"]) == verdicts.name and list(frame["reason"]) == verdicts.reason
+
+
+def test_formats_of_pictures(world, robot, tmp_path):
+    world.heatmap(robot, step=1, out=tmp_path / "a.svg")
+    assert b"<svg" in (tmp_path / "a.svg").read_bytes()
+    picture = world.heatmap(robot, step=1)
+    picture.save(tmp_path / "a.png")
+    with pytest.raises(sf.ArgumentError, match='make one with format="pdf"'):
+        picture.save(tmp_path / "a.pdf")
+
+
+def test_values_in_the_wrong_place(world, robot):
+    spawns = world.sample(robot, 5)
+    for value in (spawns, spawns.pose):
+        with pytest.raises(sf.ArgumentError, match=r"--avoid needs the name of a file, not \w+; write it with to_csv"):
+            world.sample(robot, 5, avoid=value)
+    with pytest.raises(sf.ArgumentError, match=r"one value is a tuple, \(-5, -5, 5, 5\)"):
+        world.sample(robot, 5, region=[-5, -5, 5, 5])
+
+
+def test_islands_of_pairs(world, robot):
+    pairs = world.sample(robot, pairs=5, reach_step=0.5, seed=1)
+    islands = world.info(robot, islands=True, reach_step=0.5)["reach"]["islands"]
+    assert set(pairs.island) <= {island["island"] for island in islands}
+    largest = world.sample(robot, pairs=5, reach_step=0.5, seed=1, island="largest")
+    assert (largest.island == 0).all()

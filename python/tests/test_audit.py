@@ -33,7 +33,7 @@ def test_scene_in_memory():
     scene.add_box((1, 1, 1), (3, 0, 2.5), name="lamp")
     audit = sf.audit(scene, ["box:0.5,0.5,0.5", "box:1,1,1"], rules={"max_floating": 0}, reach_step=0.5)
     assert [one["robot"] for one in audit.report["robots"]] == ["box:0.5,0.5,0.5", "box:1,1,1"]
-    assert audit.broken == ["max_floating: 1 floating prop, at most 0 are allowed"]
+    assert audit.broken == ["max_floating: 1 floating prop, at most 0 are allowed: lamp"]
     assert [finding["props"] for finding in audit.report["floating"]] == [["lamp"]]
 
 

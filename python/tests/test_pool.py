@@ -55,6 +55,47 @@ def test_mask_fills_rows(pool):
         pool.draw(np.zeros(10))
 
 
+def test_order_of_quaternions(pool, world, robot, tmp_path):
+    pool.save(tmp_path / "pool.npz")
+    columns = pool.columns["pose"]
+    wxyz = sf.Pool.load(tmp_path / "pool.npz", quaternion="wxyz")
+    assert (wxyz.columns["pose"] == columns).all()
+    poses = np.zeros((8, 7))
+    drawn = wxyz.draw(8, out=poses)
+    x, y, z, qw, qx, qy, qz = drawn.pose.T
+    assert (np.stack([x, y, z, qx, qy, qz, qw], axis=1) == columns[:8]).all() and (poses == drawn.pose).all()
+    pairs = sf.Pool(world, robot, 20, pairs=True, quaternion="wxyz", background=False)
+    drawn = pairs.draw(20)
+    assert (drawn.goal[:, 3] == pairs.columns["goal"][:, 6]).all() and (drawn.start[:, 4:] != 0).any()
+    assert drawn.path_length.shape == (20,)
+    with pytest.raises(sf.ArgumentError, match="--quaternion is 'zyx', needs one of xyzw, wxyz"):
+        fresh(pool, quaternion="zyx")
+
+
+def test_an_empty_first_draw_has_all_columns(world, robot):
+    pool = sf.Pool(world, robot, 3000)
+    drawn = pool.draw(np.zeros(16, bool))  # nothing resets, while no row is there yet
+    assert drawn.pose.shape == (0, 7) and drawn.tilt.shape == (0,)
+
+
+def test_arguments_that_have_no_sense(pool, world, robot, tmp_path):
+    for options, message in (
+        ({"min_distance": 1.0}, "--min-distance: the rows of a pool keep no distance"),
+        ({"count": 7}, "--count is not an option of a pool"),
+    ):
+        with pytest.raises(sf.ArgumentError, match=message):
+            sf.Pool(world, robot, 10, **options)
+    with pytest.raises(sf.ArgumentError, match="no column 'tild'; it has pose"):
+        pool.weigh("tild")
+    with pytest.raises(sf.ArgumentError, match=r"--out has the shape \(8, 6\)"):
+        fresh(pool).draw(8, out=np.zeros((8, 6)))
+    with pytest.raises(sf.FileError, match="nope.npz: the pool cannot be read"):
+        sf.Pool.load(tmp_path / "nope.npz")
+    np.savez(tmp_path / "other.npz", a=[1])
+    with pytest.raises(sf.FileError, match="not the file of a pool"):
+        sf.Pool.load(tmp_path / "other.npz")
+
+
 def test_tensors(pool, world, robot):
     """Needs torch, which is not one of the packages of the tests because of its size."""
     torch = pytest.importorskip("torch", reason="torch is not installed")

@@ -21,6 +21,23 @@ void add_count(std::vector<RuleResult>& out, const std::string& rule, const std:
                        (*most == 1 ? " is allowed" : " are allowed")});
 }
 
+/// Adds the result of a rule that limits findings. If it is broken, its words name the first of them.
+void add_findings(std::vector<RuleResult>& out, const AuditReport& report, const std::string& rule,
+                  const std::optional<std::size_t>& most, const std::string& thing)
+{
+    constexpr std::size_t most_names = 5;
+    for (const FindingClass& found : finding_classes(report)) {
+        if (found.rule != rule || !most) continue;
+        add_count(out, rule, "", found.findings.size(), most, thing);
+        if (out.back().is_kept) continue;
+        for (std::size_t k = 0; k < std::min(most_names, found.findings.size()); ++k) {
+            const AuditFinding& finding = found.findings[k];
+            out.back().words += (k == 0 ? ": " : "; ") + (finding.name.empty() ? finding.words : finding.name);
+        }
+        if (found.findings.size() > most_names) out.back().words += "; …";
+    }
+}
+
 /// Returns whether a pose is one that the rules require.
 bool is_required(const AuditRules& rules, const NamedPose& pose)
 {
@@ -58,8 +75,7 @@ void add_robot(std::vector<RuleResult>& out, const AuditRules& rules, const Audi
 void add_missing(std::vector<RuleResult>& out, const AuditRules& rules, const AuditReport& report)
 {
     if (!rules.max_missing) return;
-    if (report.missing)
-        return add_count(out, "max_missing", "", report.missing->size(), rules.max_missing, "missing file");
+    if (report.missing) return add_findings(out, report, "max_missing", rules.max_missing, "missing file");
     out.push_back({"max_missing", "", false,
                    "it is not known what is missing, because a map folder does not say; give the scene in its place"});
 }
@@ -82,9 +98,9 @@ std::vector<RuleResult> results_of(const AuditRules& rules, const AuditReport& r
 {
     std::vector<RuleResult> out;
     for (const RobotAudit& robot : report.robots) add_robot(out, rules, report, robot);
-    add_count(out, "max_overlaps", "", report.parts.overlaps.size(), rules.max_overlaps, "overlap");
-    add_count(out, "max_floating", "", report.parts.floating.size(), rules.max_floating, "floating prop");
-    add_count(out, "max_sunken", "", report.parts.sunken.size(), rules.max_sunken, "sunken prop");
+    add_findings(out, report, "max_overlaps", rules.max_overlaps, "overlap");
+    add_findings(out, report, "max_floating", rules.max_floating, "floating prop");
+    add_findings(out, report, "max_sunken", rules.max_sunken, "sunken prop");
     add_missing(out, rules, report);
     return out;
 }

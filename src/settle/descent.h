@@ -131,7 +131,6 @@ private:
     std::optional<Between> solid_between_parts(double z);
     Pair* highest_above(double z);
     double bottom_of(const Pair& pair, double highest, double enough);
-    static std::optional<Interval> blocked_heights(const Convex& body, const NearSolid& solid);
     void lower(const Vec2& angles, double z, double rise, Lowered& out);
     double ceiling_above(const Lowered& at);
 

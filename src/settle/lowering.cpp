@@ -184,7 +184,7 @@ std::optional<Settler::Descent::Between> Settler::Descent::solid_between_parts(d
                 continue;
             const double highest = touch(placed, solids_[s], {.min_height = z});
             if (highest <= z + contact_tolerance) continue;
-            if (blocked_heights(placed.body, solids_[s])->bottom < z + contact_tolerance) return Between{highest, s};
+            if (lowest_blocked(placed.body, solids_[s].body()) < z + contact_tolerance) return Between{highest, s};
         }
     }
     return std::nullopt;
@@ -219,12 +219,7 @@ double Settler::Descent::bottom_of(const Pair& pair, double highest, double enou
         const double bottom = top ? touch.point.z() + touch.height - *top : highest;
         if (bottom < enough) return bottom;
     }
-    return blocked_heights(body, solid)->bottom;
-}
-
-std::optional<Interval> Settler::Descent::blocked_heights(const Convex& body, const NearSolid& solid)
-{
-    return spawnfield::blocked_heights(body, solid.body());
+    return lowest_blocked(body, solid.body());
 }
 
 /// Lowers the robot onto the solids that are not higher than about z. It has no room if a solid reaches from below
@@ -281,7 +276,7 @@ double Settler::Descent::ceiling_above(const Lowered& at)
         const double lowest = lowest_possible(part, solid);
         if (lowest <= at.seen || lowest >= out || pair.possible <= at.z) continue;
         if (touch(part, solid, {.min_height = at.z}) <= at.z + contact_tolerance) continue;
-        out = std::min(out, blocked_heights(part.body, solid)->bottom);
+        out = std::min(out, lowest_blocked(part.body, solid.body()));
     }
     return out;
 }

@@ -93,7 +93,7 @@ void NearSolid::set(const std::array<Vec3, 3>& triangle, const std::optional<Tri
 {
     const auto& [a, b, c] = triangle;
     bounds = {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
-    face = touch_face_of(triangle, known);
+    set_touch_face(face, triangle, known);
     box_ = nullptr;
     body_ = face ? nullptr : std::make_unique<const Convex>(convex_of(triangle));
 }
@@ -145,10 +145,11 @@ void NearSolids::find(const Rect& area)
         area.low_x, area.low_y, area.high_x, area.high_y, [&](const Tile& tile, const ElementBox&) {
             for_each_bit(tile.near(area.low_x, area.low_y, area.high_x, area.high_y), [&](std::uint32_t number) {
                 const Label label = tile.label(number);
-                if (label == Label::Water || label == Label::Ignore || !limits.meet(tile.box(number))) return;
-                found_.push_back({tile.order(number), std::uint32_t(tiles_.size()), number});
+                if (label == Label::Water || label == Label::Ignore) return;
+                if (const ElementBox box = tile.box(number); limits.meet(box))
+                    found_.push_back({tile.order(number), std::uint32_t(tiles_.size()), number, box});
             });
-            tiles_.push_back(tile);
+            if (!found_.empty() && found_.back().tile == tiles_.size()) tiles_.push_back(tile);
         });
     std::sort(found_.begin(), found_.end(), [](const Found& l, const Found& r) { return l.order < r.order; });
 }
@@ -160,7 +161,7 @@ void NearSolids::gather(const Rect& area)
     elements_.clear();
     boxes_.clear();
     find(area);
-    for (const auto& [order, t, number] : found_) {
+    for (const auto& [order, t, number, box] : found_) {
         const Tile& tile = tiles_[t];
         Element& element = elements_.emplace_back();
         element.part = tile.part(number);
@@ -173,97 +174,87 @@ void NearSolids::gather(const Rect& area)
         } else {
             element.primitive = std::make_shared<const Convex>(convex_of(primitive.shape()));
         }
-        boxes_.push_back(tile.box(number));
+        boxes_.push_back(box);
     }
     cover_shared();
     numbers_.assign(elements_.size(), none);
     known_ = area;
 }
 
-namespace {
+/// Begins anew, for at most so many points.
+void PointNumbers::clear(std::size_t most)
+{
+    slots_.assign(std::bit_ceil(2 * most + 1), none);
+    points_.clear();
+}
 
-/// Numbers points in the order in which they are first seen. Equal points get the same number.
-class PointNumbers {
-public:
-    explicit PointNumbers(std::size_t most) : slots_(std::bit_ceil(2 * most + 1), none) { points_.reserve(most); }
-
-    std::uint32_t number_of(const Vec3& point)
-    {
-        const auto bits = [&](int axis) { return std::bit_cast<std::uint64_t>(point[axis] + 0.0); };  // -0 is 0
-        constexpr std::uint64_t odd = 0x9E3779B97F4A7C15;
-        const std::uint64_t hash = ((bits(0) * odd ^ bits(1)) * odd ^ bits(2)) * odd;
-        std::size_t slot = hash >> 32 & (slots_.size() - 1);
-        while (slots_[slot] != none && points_[slots_[slot]] != point) slot = (slot + 1) & (slots_.size() - 1);
-        if (slots_[slot] == none) {
-            slots_[slot] = std::uint32_t(points_.size());
-            points_.push_back(point);
-        }
-        return slots_[slot];
+std::uint32_t PointNumbers::number_of(const Vec3& point)
+{
+    const auto bits = [&](int axis) { return std::bit_cast<std::uint64_t>(point[axis] + 0.0); };  // -0 is 0
+    constexpr std::uint64_t odd = 0x9E3779B97F4A7C15;
+    const std::uint64_t hash = ((bits(0) * odd ^ bits(1)) * odd ^ bits(2)) * odd;
+    std::size_t slot = hash >> 32 & (slots_.size() - 1);
+    while (slots_[slot] != none && points_[slots_[slot]] != point) slot = (slot + 1) & (slots_.size() - 1);
+    if (slots_[slot] == none) {
+        slots_[slot] = std::uint32_t(points_.size());
+        points_.push_back(point);
     }
-
-private:
-    static constexpr std::uint32_t none = std::uint32_t(-1);
-    std::vector<std::uint32_t> slots_;  ///< numbers of points, or none
-    std::vector<Vec3> points_;
-};
-
-}  // namespace
+    return slots_[slot];
+}
 
 /// Marks what nothing comes to lie on from above, unless it also lies on another triangle: corners and edges that
 /// several triangles share, in all but one of them; and edges in a valley or in a plane, in both triangles. Leaves out
 /// triangles that may be walls, because what touches them is examined one by one.
 void NearSolids::cover_shared()
 {
-    struct Corner {
-        std::array<std::uint32_t, 3> points;  ///< of its triangle
-        std::uint32_t element, before;        ///< index in `corners` of an earlier one at the same point, or none
-    };
     flat_edges_.clear();
-    PointNumbers numbers(3 * elements_.size());
-    std::vector<Corner> corners;
-    std::vector<std::uint32_t> last;  // of each point, an index in `corners`
-    corners.reserve(3 * elements_.size());
-    last.reserve(3 * elements_.size());
+    numbers_of_points_.clear(3 * elements_.size());
+    corners_.clear();
+    last_corners_.clear();
     for (std::uint32_t e = 0; e < elements_.size(); ++e) {
         Element& element = elements_[e];
         if (!element.shape || !is_ground(*element.shape)) continue;
         std::array<std::uint32_t, 3> points;
         for (std::size_t k = 0; k < 3; ++k) {
-            points[k] = numbers.number_of(element.corners[k]);
-            if (points[k] < last.size())
+            points[k] = numbers_of_points_.number_of(element.corners[k]);
+            if (points[k] < last_corners_.size())
                 element.wanted.covered_points |= std::uint8_t(1 << k);
             else
-                last.push_back(none);
+                last_corners_.push_back(none);
         }
+        std::array<Corner, 3> corners;
         for (std::size_t k = 0; k < 3; ++k)
-            for (std::uint32_t c = last[points[k]]; c != none; c = corners[c].before)
-                cover_edge(corners[c].element, corners[c].points, e, points, k);
-        for (const std::uint32_t point : points) {
-            corners.push_back({points, e, last[point]});
-            last[point] = std::uint32_t(corners.size() - 1);
+            corners[k] = {e, std::uint32_t(k), points[(k + 1) % 3], points[(k + 2) % 3], last_corners_[points[k]]};
+        for (const Corner& corner : corners)
+            for (std::uint32_t c = corner.before; c != none; c = corners_[c].before)
+                if (const Corner& other = corners_[c]; other.next == corner.next || other.last == corner.next)
+                    cover_edge(other, corner);
+        for (const Corner& corner : corners) {
+            last_corners_[points[corner.index]] = std::uint32_t(corners_.size());
+            corners_.push_back(corner);
         }
     }
 }
 
-/// The same for two triangles that share corner k of the second one, if they also share the next corner, and not the
-/// third one. `others` and `points` are the numbers of their corners.
-void NearSolids::cover_edge(std::uint32_t i, const std::array<std::uint32_t, 3>& others, std::uint32_t j,
-                            const std::array<std::uint32_t, 3>& points, std::size_t k)
+/// The same for the edges of two triangles that begin at a corner which they share, and lead to the next corner of the
+/// second one.
+void NearSolids::cover_edge(const Corner& corner, const Corner& other)
 {
     constexpr double clear = 1e-10;  // m or m^4: more than what rounding changes
+    const bool is_next = corner.next == other.next;
+    if ((is_next ? corner.last : corner.next) == other.last) return;  // the same triangle again
     std::array<int, 3> same;
-    for (std::size_t l = 0; l < 3; ++l)
-        same[l] = others[l] == points[0] ? 0 : others[l] == points[1] ? 1 : others[l] == points[2] ? 2 : -1;
-    if (std::count(same.begin(), same.end(), -1) != 1) return;
+    same[corner.index] = int(other.index);
+    same[(corner.index + (is_next ? 1 : 2)) % 3] = int(other.index + 1) % 3;
+    same[(corner.index + (is_next ? 2 : 1)) % 3] = -1;
     const SharedEdge edge(same);
-    if (edge.other_alone != int(k + 2) % 3) return;
-    Element &first = elements_[i], &second = elements_[j];
+    Element &first = elements_[corner.element], &second = elements_[other.element];
     second.wanted.covered_edges |= SharedEdge::edge_without(edge.other_alone);
     const Vec3& normal = first.shape->unit_normal;
     const double overhang = edge.overhang(first.corners, second.corners),
                  rise = normal.dot(second.corners[std::size_t(edge.other_alone)] - first.corners[0]) / normal.z();
     if (std::abs(overhang) <= clear || std::abs(rise) <= clear)
-        flat_edges_.push_back({i, j, same});
+        flat_edges_.push_back({corner.element, other.element, same});
     else if (overhang < 0 && rise > 0)
         first.wanted.covered_edges |= SharedEdge::edge_without(edge.alone);
 }

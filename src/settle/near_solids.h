@@ -35,6 +35,18 @@ private:
     Vec3 place_ = Vec3::Zero();  ///< of the robot, if it is a box
 };
 
+/// Numbers points in the order in which they are first seen. Equal points get the same number.
+class PointNumbers {
+public:
+    void clear(std::size_t most);
+    std::uint32_t number_of(const Vec3& point);
+
+private:
+    static constexpr std::uint32_t none = std::uint32_t(-1);
+    std::vector<std::uint32_t> slots_;  ///< numbers of points, or none
+    std::vector<Vec3> points_;
+};
+
 /// Finds the solids near one place after the other. Places that follow each other in a small area share work.
 class NearSolids {
 public:
@@ -61,19 +73,25 @@ private:
     struct Found {
         std::uint64_t order;         ///< Tile::order()
         std::uint32_t tile, number;  ///< index in tiles_, and element of that tile
+        ElementBox box;
     };
     /// Two triangles with a common edge, which may be a ridge or a valley by rounding only.
     struct FlatEdge {
         std::uint32_t first, second;  ///< indices in elements_
         std::array<int, 3> same;      ///< corner k of the first one is corner same[k] of the second one, -1: none
     };
+    /// A corner of a triangle.
+    struct Corner {
+        std::uint32_t element, index;  ///< the triangle, and which of its corners
+        std::uint32_t next, last;      ///< numbers of the points of the next corner, and of the one after that
+        std::uint32_t before;          ///< index in corners_ of an earlier one at the same point, or none
+    };
     static constexpr std::uint32_t none = std::uint32_t(-1);
 
     void find(const Rect& area);
     void gather(const Rect& area);
     void cover_shared();
-    void cover_edge(std::uint32_t i, const std::array<std::uint32_t, 3>& others, std::uint32_t j,
-                    const std::array<std::uint32_t, 3>& points, std::size_t k);
+    void cover_edge(const Corner& corner, const Corner& other);
     void select(const Vec3& place, const Rect& area);
     static void set(NearSolid& solid, const Element& element, const Vec3& place);
 
@@ -91,6 +109,10 @@ private:
     // Only used by gather():
     std::vector<Tile> tiles_;
     std::vector<Found> found_;
+    // Only used by cover_shared():
+    PointNumbers numbers_of_points_;
+    std::vector<Corner> corners_;
+    std::vector<std::uint32_t> last_corners_;  ///< of each point, an index in corners_
 };
 
 }  // namespace spawnfield

@@ -665,17 +665,15 @@ std::array<Vec3, 3> sides_of(const std::array<Vec3, 3>& triangle)
     return {b - a, c - b, a - c};
 }
 
-TouchFace placed(const TriangleShape& shape, const std::array<Vec3, 3>& triangle)
+void set(TouchFace& out, const TriangleShape& shape, const std::array<Vec3, 3>& triangle)
 {
     const Vec3& normal = shape.unit_normal;
-    TouchFace out;
     out.count = triangle.size();
     std::copy(triangle.begin(), triangle.end(), out.corners.begin());
     out.normal = normal / normal.z();
     out.height = normal.dot(triangle[0]) / normal.z();
     for (std::size_t k = 0; k < out.count; ++k)
         out.sides[k] = {shape.inwards[k], shape.inwards[k].dot(triangle[k].head<2>())};
-    return out;
 }
 
 }  // namespace
@@ -696,13 +694,19 @@ std::optional<TriangleShape> triangle_shape_of(const std::array<Vec3, 3>& triang
 
 std::optional<TouchFace> touch_face_of(const std::array<Vec3, 3>& triangle)
 {
-    const std::optional<TriangleShape> shape = triangle_shape_of(triangle);
-    return shape ? std::optional(placed(*shape, triangle)) : std::nullopt;
+    std::optional<TouchFace> out;
+    set_touch_face(out, triangle, triangle_shape_of(triangle));
+    return out;
 }
 
-std::optional<TouchFace> touch_face_of(const std::array<Vec3, 3>& triangle, const std::optional<TriangleShape>& known)
+void set_touch_face(std::optional<TouchFace>& out, const std::array<Vec3, 3>& triangle,
+                    const std::optional<TriangleShape>& known)
 {
-    return known && known->sides == sides_of(triangle) ? placed(*known, triangle) : touch_face_of(triangle);
+    const bool is_same = known && known->sides == sides_of(triangle);
+    const std::optional<TriangleShape> shape = is_same ? std::nullopt : triangle_shape_of(triangle);
+    if (!is_same && !shape) return out.reset();
+    if (!out) out.emplace();
+    set(*out, is_same ? *known : *shape, triangle);
 }
 
 TouchFace top_of(const Bounds& box)
@@ -761,18 +765,29 @@ std::optional<double> lower_end(const PlacedBody& placed, double x, double y)
     return std::isfinite(low) ? std::optional(low) : std::nullopt;
 }
 
+namespace {
+
+double highest_touch_of(const Convex& body, const Convex& solid)
+{
+    std::vector<Touch> touches;
+    add_touches(body, solid, touches);
+    double out = -std::numeric_limits<double>::infinity();
+    for (const Touch& touch : touches) out = std::max(out, touch.height);
+    return out;
+}
+
+}  // namespace
+
 std::optional<Interval> blocked_heights(const Convex& body, const Convex& solid)
 {
-    const auto highest = [](const Convex& a, const Convex& b) {
-        std::vector<Touch> touches;
-        add_touches(a, b, touches);
-        double out = -std::numeric_limits<double>::infinity();
-        for (const Touch& touch : touches) out = std::max(out, touch.height);
-        return out;
-    };
-    const double top = highest(body, solid);
+    const double top = highest_touch_of(body, solid);
     if (!std::isfinite(top)) return std::nullopt;
-    return Interval{-highest(upside_down(body), upside_down(solid)), top};
+    return Interval{lowest_blocked(body, solid), top};
+}
+
+double lowest_blocked(const Convex& body, const Convex& solid)
+{
+    return -highest_touch_of(upside_down(body), upside_down(solid));
 }
 
 }  // namespace spawnfield

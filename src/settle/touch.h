@@ -73,9 +73,10 @@ struct TriangleShape {
 std::optional<TouchFace> touch_face_of(const std::array<Vec3, 3>& triangle);
 std::optional<TriangleShape> triangle_shape_of(const std::array<Vec3, 3>& triangle);
 
-/// The same for a triangle whose shape is known from another place. If its sides differ from those there by rounding,
-/// the shape is computed anew: so the result is always the same as without `known`.
-std::optional<TouchFace> touch_face_of(const std::array<Vec3, 3>& triangle, const std::optional<TriangleShape>& known);
+/// Sets `out` to the same, of a triangle whose shape is known from another place. If its sides differ from those there
+/// by rounding, the shape is computed anew: so the result is always the same as without `known`.
+void set_touch_face(std::optional<TouchFace>& out, const std::array<Vec3, 3>& triangle,
+                    const std::optional<TriangleShape>& known);
 
 /// Returns the top of a box whose sides are parallel to the axes.
 TouchFace top_of(const Bounds& box);
@@ -128,6 +129,9 @@ std::optional<Touch> highest_touch(const Convex& body, const Convex& ground);
 /// Returns the interval of heights (see Touch::height) in which the raised body overlaps the solid, or nothing if they
 /// do not overlap seen from above.
 std::optional<Interval> blocked_heights(const Convex& body, const Convex& solid);
+
+/// Returns the lower end of this interval, of bodies that overlap seen from above.
+double lowest_blocked(const Convex& body, const Convex& solid);
 
 /// Returns the z of a body's upper end on the vertical line through (x, y), or nothing if the line misses the body.
 std::optional<double> upper_end(const Convex& body, double x, double y);
