@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from . import commands
 from .errors import ArgumentError, FileError
 from .robot import Robot
 from .world import World
@@ -81,6 +82,7 @@ class Pool:
         if options.get("min_distance"):
             raise ArgumentError("--min-distance: the rows of a pool keep no distance; give it to draw()")
         options = {"yaw": "random", **options}
+        commands.arguments("sample", options)  # raises here, not in the background, if it has no such option
         self._pose = "start" if pairs else "pose"
         self._decks = [_Deck(size, seed, k) for k in range(len(worlds))]
         self._changed = threading.Condition()
@@ -175,15 +177,17 @@ class Pool:
                 makes it of `columns`; or None for equal weights.
 
         Raises:
-            ArgumentError: the weights have another length, or one of them is negative or NaN.
+            ArgumentError: the weights have another length, or one of them is negative or not finite.
         """
         self.wait()
         if isinstance(weights, str) and weights not in self.columns:
             raise ArgumentError(f"--weights: the pool has no column {weights!r}; it has {', '.join(self.columns)}")
         if weights is not None and not isinstance(weights, np.ndarray):
             weights = self.columns[weights] if isinstance(weights, str) else np.asarray(weights(self.columns))
-        if weights is not None and (weights.shape != (len(self),) or not (weights >= 0).all()):
-            raise ArgumentError(f"--weights needs {len(self)} numbers >= 0, one for each row")
+        if weights is not None and (
+            weights.shape != (len(self),) or not (np.isfinite(weights) & (weights >= 0)).all()
+        ):
+            raise ArgumentError(f"--weights needs {len(self)} finite numbers >= 0, one for each row")
         first = 0
         for deck in self._decks:
             deck.weigh(None if weights is None else np.asarray(weights[first : first + deck.size], float))
@@ -357,6 +361,9 @@ class Draw:
 
     def __len__(self) -> int:
         return len(self.index)
+
+    def __repr__(self) -> str:
+        return f"Draw({len(self)}: {', '.join(self._decks[0].buffers)})"
 
     def column(self, name: str) -> np.ndarray:
         """Returns a column of these rows, for example "pose"."""

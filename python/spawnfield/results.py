@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import io
+import operator
 import os
 import shutil
 import subprocess
@@ -15,6 +16,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -32,11 +34,10 @@ VALID = 7
 
 
 class Table:
-    """Columns of equal length, one row for each pose: the base of `Spawns`, `Pairs`,
-    `Fleet`, `Verdicts` and `Raster`.
+    """Columns of equal length, one row for each pose: the base of `Spawns`, `Pairs`, `Fleet`, `Verdicts` and `Raster`.
 
-    Each column is an attribute, for example ``spawns.yaw``. ``len()`` is the number of rows. The arrays are made once
-    and stay when the table is deleted.
+    Each column is an attribute, for example ``spawns.yaw``. ``len()`` is the number of rows, and ``spawns[0]`` the
+    first one, with its values as attributes. The arrays are made once and stay when the table is deleted.
 
     Attributes:
         columns: dictionary of all columns by their names.
@@ -58,6 +59,14 @@ class Table:
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))
+
+    def __getitem__(self, index: int) -> SimpleNamespace:
+        i = range(len(self))[operator.index(index)]
+        return SimpleNamespace(**{name: values[i] for name, values in self.columns.items()}, **self._words(i))
+
+    def _words(self, i: int) -> dict[str, str]:
+        """Returns what a row has beside its columns."""
+        return {}
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({len(self)}: {', '.join(self.columns)})"
@@ -236,9 +245,15 @@ class Verdicts(Table):
     @property
     def hit(self) -> list[str]:
         """The part of the world that the robot meets at each pose; "" if it meets none, or if that is not known."""
-        parts = self._found.parts()
-        names = {-1: "", -2: "occupancy"}
-        return [names[part] if part < 0 else parts[part] for part in self.hit_part.tolist()]
+        return [self._part_names[part] for part in self.hit_part.tolist()]
+
+    def _words(self, i: int) -> dict[str, str]:
+        hit = self._part_names[int(self.hit_part[i])]
+        return {"name": VERDICTS[int(self.code[i])], "hit": hit, "reason": self._found.reason(i)}
+
+    @functools.cached_property
+    def _part_names(self) -> dict[int, str]:
+        return {-1: "", -2: "occupancy", **dict(enumerate(self._found.parts()))}
 
     @property
     def reason(self) -> list[str]:

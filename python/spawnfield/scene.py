@@ -27,6 +27,9 @@ class Scene:
         self._core = _core.Scene()
         self._core.name = name
 
+    def __repr__(self) -> str:
+        return f"Scene({self._core.name!r}: {len(self.part_names)} parts)"
+
     @property
     def part_names(self) -> list[str]:
         """The names of the parts, in the order in which they were added."""

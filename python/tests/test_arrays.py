@@ -330,3 +330,21 @@ def test_islands_of_pairs(world, robot):
     assert set(pairs.island) <= {island["island"] for island in islands}
     largest = world.sample(robot, pairs=5, reach_step=0.5, seed=1, island="largest")
     assert (largest.island == 0).all()
+
+
+def test_names_of_objects(world, robot):
+    assert repr(sf.Scene("shop").add_box((1, 1, 1))) == "Scene('shop': 1 parts)"
+    assert repr(sf.Pool(world, robot, 9, seed=1).draw(3)).startswith("Draw(3: pose, ")
+
+
+def test_rows(world, robot):
+    spawns = world.sample(robot, 4, seed=3)
+    assert [row.yaw for row in spawns] == spawns.yaw.tolist() and (spawns[-1].pose == spawns.pose[3]).all()
+    verdicts = world.check(robot, [[0, 0, 0.2], [500, 0, 1]])
+    assert [(row.name, row.hit, row.reason) for row in verdicts] == list(
+        zip(verdicts.name, verdicts.hit, verdicts.reason)
+    )
+    with pytest.raises(IndexError):
+        spawns[4]
+    with pytest.raises(TypeError):
+        spawns[1:2]

@@ -82,6 +82,7 @@ def test_arguments_that_have_no_sense(pool, world, robot, tmp_path):
     for options, message in (
         ({"min_distance": 1.0}, "--min-distance: the rows of a pool keep no distance"),
         ({"count": 7}, "--count is not an option of a pool"),
+        ({"min_distanc": 1.0}, "did you mean min_distance"),
     ):
         with pytest.raises(sf.ArgumentError, match=message):
             sf.Pool(world, robot, 10, **options)

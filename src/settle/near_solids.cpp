@@ -182,13 +182,13 @@ void NearSolids::gather(const Rect& area)
 }
 
 /// Begins anew, for at most so many points.
-void PointNumbers::clear(std::size_t most)
+void PointTable::clear(std::size_t most)
 {
     slots_.assign(std::bit_ceil(2 * most + 1), none);
     points_.clear();
 }
 
-std::uint32_t PointNumbers::number_of(const Vec3& point)
+std::uint32_t PointTable::number_of(const Vec3& point)
 {
     const auto bits = [&](int axis) { return std::bit_cast<std::uint64_t>(point[axis] + 0.0); };  // -0 is 0
     constexpr std::uint64_t odd = 0x9E3779B97F4A7C15;

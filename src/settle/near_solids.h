@@ -35,8 +35,9 @@ private:
     Vec3 place_ = Vec3::Zero();  ///< of the robot, if it is a box
 };
 
-/// Numbers points in the order in which they are first seen. Equal points get the same number.
-class PointNumbers {
+/// Numbers points in the order in which they are first seen. Equal points get the same number. Unlike PointNumbers, it
+/// keeps its memory for the next points, because it is used for each robot that is let down.
+class PointTable {
 public:
     void clear(std::size_t most);
     std::uint32_t number_of(const Vec3& point);
@@ -110,7 +111,7 @@ private:
     std::vector<Tile> tiles_;
     std::vector<Found> found_;
     // Only used by cover_shared():
-    PointNumbers numbers_of_points_;
+    PointTable numbers_of_points_;
     std::vector<Corner> corners_;
     std::vector<std::uint32_t> last_corners_;  ///< of each point, an index in corners_
 };
