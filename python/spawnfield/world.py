@@ -138,8 +138,9 @@ class World:
             robot: the robot; leave it out with the option ``fleet``.
             count: number of spawns; leave it out with the options ``pairs``, ``fill`` and ``fleet``.
             progress: True: show progress with tqdm; None: only on a terminal, if tqdm is installed.
-            **options: for example ``min_distance=1.0, yaw="random", seed=7, island="largest"``. With ``out`` and
-                ``format``, files are written, too.
+            **options: for example ``min_distance=1.0, yaw="random", seed=7, island="largest"``. ``avoid`` is a file,
+                `Spawns`, an array of poses as for `check`, or a list of these. With ``out`` and ``format``, files are
+                written, too.
 
         Returns:
             `Spawns`; with the option ``pairs``, `Pairs`; with ``fleet`` or ``fill``, a `Fleet`. If fewer are found than
@@ -323,6 +324,8 @@ class World:
         words = [self.folder]
         if robot is not None:
             words.append(robot_word(robot, things, options))
+        if options.get("avoid") is not None:
+            options = {**options, "avoid": avoided_words(options["avoid"], things)}
         return commands.run(command, words, options, things, wants_text, progress)
 
 
@@ -348,17 +351,24 @@ def pose_array(poses: Any) -> np.ndarray:
     return numbers[None, :] if numbers.ndim == 1 else numbers
 
 
-def poses_word(poses: Any, inputs: dict[str, Any], has_text: bool) -> str:
-    """Returns what stands for poses in a command: the name of their file, or a name under which poses in memory are
-    added to the inputs. `has_text`: the command writes them to a file."""
+def poses_word(poses: Any, inputs: dict[str, Any], has_text: bool, word: str = "poses in memory") -> str:
+    """Returns what stands for poses in a command: the name of their file, or a name (`word`) under which poses in
+    memory are added to the inputs. `has_text`: the command writes them to a file."""
     if isinstance(poses, (str, os.PathLike)):
         return os.fspath(poses)
-    word = "poses in memory"
     try:
         inputs[word] = _core.poses(pose_array(poses), has_text)
     except _core.ArgumentError as error:
         raise translated(error) from None
     return word
+
+
+def avoided_words(avoid: Any, inputs: dict[str, Any]) -> list[str]:
+    """Returns what stands for the option ``avoid``: a file, poses in memory, or a list of both."""
+    is_list = isinstance(avoid, list) and all(isinstance(o, (str, os.PathLike)) or hasattr(o, "__len__") for o in avoid)
+    is_rows = is_list and all(isinstance(one, (list, tuple)) for one in avoid)  # one array of poses
+    groups = avoid if is_list and not is_rows else [avoid]
+    return [poses_word(group, inputs, False, f"avoided poses {k + 1}") for k, group in enumerate(groups)]
 
 
 def info(what: File | Scene, *, progress: bool | None = None, **options: Any) -> dict[str, Any]:

@@ -315,11 +315,24 @@ def test_formats_of_pictures(world, robot, tmp_path):
         picture.save(tmp_path / "a.pdf")
 
 
+def test_avoid_poses_in_memory(world, robot, tmp_path):
+    others = world.sample(robot, 5, seed=1)
+    others.to_csv(tmp_path / "others.csv")
+    expected = world.sample(robot, 20, seed=2, avoid=tmp_path / "others.csv", avoid_distance=2).pose
+    for avoid in (others, others.pose, [others], others.pose[:, :3].tolist(), [others, tmp_path / "others.csv"]):
+        assert (world.sample(robot, 20, seed=2, avoid=avoid, avoid_distance=2).pose == expected).all()
+
+    def least_gap(poses):
+        return np.linalg.norm(poses[:, None, :3] - others.pose[None, :, :3], axis=2).min()
+
+    assert least_gap(world.sample(robot, 20, seed=2).pose) < 2 <= least_gap(expected)
+
+
 def test_values_in_the_wrong_place(world, robot):
     spawns = world.sample(robot, 5)
     for value in (spawns, spawns.pose):
-        with pytest.raises(sf.ArgumentError, match=r"--avoid needs the name of a file, not \w+; write it with to_csv"):
-            world.sample(robot, 5, avoid=value)
+        with pytest.raises(sf.ArgumentError, match=r"--region needs the name of a file, not \w+; write it with to_csv"):
+            world.sample(robot, 5, region=value)
     with pytest.raises(sf.ArgumentError, match=r"one value is a tuple, \(-5, -5, 5, 5\)"):
         world.sample(robot, 5, region=[-5, -5, 5, 5])
 
