@@ -461,13 +461,12 @@ void add_round(const Convex& body, const Ground& ground, const WantedTouches& wa
         add_tube({body.points[0], body.points[1]}, std::max(body.ball, body.disc), ground, wanted, out);
 }
 
-}  // namespace
-
 /// For a direction n with n.z = 1, let f(n) be the largest value of n . (g - b) for points g of the ground and b of the
 /// body. A body that is raised by more than f(n) does not overlap the ground. So the height of the highest touch is the
 /// smallest value of f, which is convex. Cutting planes find it (Kelley, The cutting-plane method for solving convex
-/// programs, 1960): each of them comes from one n, with the points g and b that give f(n).
-std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
+/// programs, 1960): each of them comes from one n, with the points g and b that give f(n). Returns nothing as soon as
+/// one of them shows that the touch is below `min_height`.
+std::optional<Touch> highest_touch_above(const Convex& body, const Convex& ground, double min_height)
 {
     struct Farthest {
         Vec3 on_body;  ///< the body's farthest point along -n
@@ -483,10 +482,13 @@ std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
     Vec2 best = Vec2::Zero();
     std::vector<Farthest> planes{farthest(best)};
     double least = reach(planes[0], best), limit = 1;  // of a step from the best slope
-    for (int step = 0;; ++step) {
-        std::vector<MinimaxPlane> around_best;
+    std::vector<MinimaxPlane> around_best;
+    std::vector<Farthest> kept;
+    std::optional<Minimax> before;  // the last result, with the indices that its planes have now
+    for (int step = 0; least >= min_height; ++step) {
+        around_best.clear();
         for (const Farthest& plane : planes) around_best.push_back({reach(plane, best) - least, plane.apart.head<2>()});
-        const Minimax lowest = lowest_of_highest(around_best, limit);
+        const Minimax lowest = lowest_of_highest(around_best, limit, before);
         if (lowest.value >= -rounding || step == max_steps) {  // after max_steps: an upper bound
             Vec3 point = Vec3::Zero();
             double weights = 0;
@@ -509,14 +511,26 @@ std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
             best = slope;
             least -= decrease;
         }
-        std::vector<Farthest> kept;
-        for (std::size_t k = planes.size() > most_planes ? planes.size() - most_planes : 0; k < planes.size(); ++k)
-            kept.push_back(planes[k]);
-        for (const int k : lowest.planes)
-            if (k >= 0 && std::size_t(k) + most_planes < planes.size()) kept.push_back(planes[std::size_t(k)]);
+        const std::size_t newest = planes.size() > most_planes ? planes.size() - most_planes : 0;
+        kept.assign(planes.begin() + std::ptrdiff_t(newest), planes.end());
+        before = lowest;
+        for (int& plane : before->planes) {
+            if (plane < 0) continue;
+            const auto k = std::size_t(plane);
+            plane = int(k >= newest ? k - newest : kept.size());
+            if (k < newest) kept.push_back(planes[k]);
+        }
         kept.push_back(there);
-        planes = std::move(kept);
+        std::swap(planes, kept);
     }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
+{
+    return highest_touch_above(body, ground, -std::numeric_limits<double>::infinity());
 }
 
 void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& out, const WantedTouches& wanted)
@@ -536,7 +550,7 @@ void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& o
         return;
     }
     const auto add = [&](const Convex& a, const Convex& b) {
-        if (const auto touch = highest_touch(a, b)) out.push_back(*touch);
+        if (const auto touch = highest_touch_above(a, b, wanted.min_height)) out.push_back(*touch);
     };
     add(body, ground);
     for (const Convex& end : ends_of(body)) add(end, ground);
