@@ -30,7 +30,6 @@ def _order_of(quaternion: str) -> list[int] | None:
     return _QUATERNIONS[quaternion]
 
 
-
 @atexit.register
 def _end_work() -> None:
     """Waits for the threads of pools, because a thread that is in a command when Python ends aborts the process."""
@@ -180,10 +179,11 @@ class Pool:
             ArgumentError: the weights have another length, or one of them is negative or not finite.
         """
         self.wait()
-        if isinstance(weights, str) and weights not in self.columns:
-            raise ArgumentError(f"--weights: the pool has no column {weights!r}; it has {', '.join(self.columns)}")
         if weights is not None and not isinstance(weights, np.ndarray):
-            weights = self.columns[weights] if isinstance(weights, str) else np.asarray(weights(self.columns))
+            columns = self.columns  # copies of all rows
+            if isinstance(weights, str) and weights not in columns:
+                raise ArgumentError(f"--weights: the pool has no column {weights!r}; it has {', '.join(columns)}")
+            weights = columns[weights] if isinstance(weights, str) else np.asarray(weights(columns))
         if weights is not None and (
             weights.shape != (len(self),) or not (np.isfinite(weights) & (weights >= 0)).all()
         ):

@@ -78,7 +78,7 @@ def test_an_empty_first_draw_has_all_columns(world, robot):
     assert drawn.pose.shape == (0, 7) and drawn.tilt.shape == (0,)
 
 
-def test_arguments_that_have_no_sense(pool, world, robot, tmp_path):
+def test_arguments_that_make_no_sense(pool, world, robot, tmp_path):
     for options, message in (
         ({"min_distance": 1.0}, "--min-distance: the rows of a pool keep no distance"),
         ({"count": 7}, "--count is not an option of a pool"),

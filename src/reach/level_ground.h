@@ -81,7 +81,7 @@ private:
         double middle = 0;      ///< height of that plane at the place, m
         double steepness = 0;   ///< its slope
     };
-    /// Of the robot at a yaw.
+    /// What of the robot depends on its yaw.
     struct Turned {
         Polygon2 footprint;
         std::vector<Polygon2> feet;
