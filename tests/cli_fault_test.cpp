@@ -356,3 +356,22 @@ TEST_CASE("a summary that cannot be written is reported before all work, and not
           "experiment map -o new --dims 2 --steps 1" + husky})
         desk.check({arguments + " --summary none/s.json", message}, 1);
 }
+
+TEST_CASE("control characters of files reach the terminal as codes, and unreachable files have status 4")
+{
+    const TempFolder folder;
+    folder.write("a.obj", "o \x1b[31mred\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const ProgramRun run = run_program(folder, "bake a.obj -o map --label none=terrain");
+    CHECK_THAT(run.err, Contains("there are \\x1b[31mred, DefaultMaterial"));
+    CHECK(run.err.find('\x1b') == std::string::npos);
+
+    fs::create_symlink("loop", folder / "loop");
+    const ProgramRun loop = run_program(folder, "info loop");
+    CHECK(loop.status == 4);
+    CHECK(loop.err == "spawnfield: loop: cannot be reached: Too many levels of symbolic links\n");
+    const ProgramRun name = run_program(folder, "info " + std::string(300, 'a'));
+    CHECK(name.status == 4);
+    CHECK_THAT(name.err, Contains("aaa: cannot be reached: File name too long"));
+    CHECK(run_program(folder, "--help >/dev/full").status == 1);
+    CHECK(run_program(folder, "--version >/dev/full").status == 1);
+}

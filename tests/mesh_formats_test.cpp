@@ -31,9 +31,9 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text.replace(at, from.size(), to);
 }
 
-void check_wedge(const std::filesystem::path& file, const Vec3& size)
+void check_wedge(const std::filesystem::path& file, const Vec3& size, const SceneOptions& options = {})
 {
-    const Scene scene = load_scene(file);
+    const Scene scene = load_scene(file, options);
     const Bounds bounds = scene.bounds();
     CAPTURE(file, bounds.min.transpose(), bounds.max.transpose());
     CHECK(((bounds.max - bounds.min) - size).norm() < 1e-5);
@@ -258,7 +258,8 @@ TEST_CASE("DXF, which assimp also turns, is read with its own axes")
          {std::pair{0, "000"}, std::pair{1, "400"}, std::pair{2, "021"}, std::pair{3, "021"}})
         for (int axis = 0; axis < 3; ++axis)
             text += std::to_string(10 * (axis + 1) + codes) + "\n" + corner[axis] + "\n";
-    const Bounds bounds = load_scene(folder.write("a.dxf", text + "0\nENDSEC\n0\nEOF\n")).bounds();
+    const std::filesystem::path file = folder.write("a.dxf", text + "0\nENDSEC\n0\nEOF\n");
+    const Bounds bounds = load_scene(file, {.any_mesh = true}).bounds();
     CHECK((bounds.min - Vec3(0, 0, 0)).norm() < 1e-6);
     CHECK((bounds.max - Vec3(4, 2, 1)).norm() < 1e-6);
 }
@@ -387,8 +388,8 @@ TEST_CASE("3MF and AMF are read in their unit, or else in millimetres")
                     face.substr(2) + "</v3></triangle>";
         return folder.write("a.amf", text + "</volume></mesh></object></amf>\n");
     };
-    check_wedge(amf(" unit=\"feet\""), 0.3048 * Vec3(4, 2, 1));
-    check_wedge(amf(" version=\"1.1\""), 0.001 * Vec3(4, 2, 1));
+    check_wedge(amf(" unit=\"feet\""), 0.3048 * Vec3(4, 2, 1), {.any_mesh = true});
+    check_wedge(amf(" version=\"1.1\""), 0.001 * Vec3(4, 2, 1), {.any_mesh = true});
     check_wedge(folder.write("in.3mf", package_3mf("unit=\"inch\"")), 0.0254 * Vec3(4, 2, 1));
     CHECK_THROWS_WITH(load_scene(folder.write("bad.3mf", package_3mf("unit=\"mile\""))),
                       Contains("has the unit \"mile\", needs one of micron, millimeter"));
@@ -398,4 +399,70 @@ TEST_CASE("3MF and AMF are read in their unit, or else in millimetres")
             load_scene(folder.write("cut.3mf", good.substr(0, size)));
         } catch (const FileError&) {
         }
+}
+
+TEST_CASE("only formats of the tests are read, by extension and by content, unless any mesh is wanted")
+{
+    const TempFolder folder;
+    const std::string ac3d =
+        "AC3Db\nMATERIAL \"\" rgb 1 1 1 amb 0 0 0 emis 0 0 0 spec 0 0 0 shi 0 trans 0\nOBJECT poly\nnumvert 3\n"
+        "0 0 0\n1 0 0\n0 1 0\nnumsurf 1\nSURF 0x0\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\nkids 0\n";
+    const std::filesystem::path by_name = folder.write("a.ac", ac3d), by_content = folder.write("a.stl", ac3d);
+    CHECK(load_scene(by_name, {.any_mesh = true}).triangles.size() == 1);
+    CHECK_THROWS_WITH(load_scene(by_name),
+                      by_name.string() +
+                          ": has the extension \".ac\", needs one of 3ds, 3mf, dae, fbx, glb, gltf, obj, "
+                          "off, ply, stl; convert it, or read it all the same with --any-mesh");
+    CHECK(load_scene(by_content, {.any_mesh = true}).triangles.size() == 1);
+    CHECK_THROWS_AS(load_scene(by_content), FileError);
+    const std::filesystem::path robot = folder.write("robot.yaml",
+                                                     "format: spawnfield-robot/1\nparts: [{mesh: a.ac}]\n");
+    CHECK_THROWS_WITH(load_robot(robot.string()), Contains("--any-mesh"));
+}
+
+TEST_CASE("3MF packages that are too large, or whose components are wrong, are refused before they are unpacked")
+{
+    const TempFolder folder;
+    const std::string triangle =
+        "<object id='1'><mesh><vertices><vertex x='0' y='0' z='0'/><vertex x='9' y='0' z='0'/><vertex x='0' y='9' "
+        "z='0'/></vertices><triangles><triangle v1='0' v2='1' v3='2'/></triangles></mesh></object>";
+    const auto complaint = [&](const std::string& objects, const std::string& extra = "") {
+        const std::string rels =
+            "<Relationships><Relationship Target='/3D/a.model' "
+            "Type='http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel'/></Relationships>";
+        const std::filesystem::path file = folder.write(
+            "a.3mf", zip({{"_rels/.rels", rels},
+                          {"3D/a.model", "<model unit='meter'><resources>" + objects +
+                                             "</resources><build><item objectid='1'/></build></model>"},
+                          {"x", extra}}));
+        try {
+            load_scene(file);
+        } catch (const FileError& error) {
+            return std::string(error.what()).substr(file.string().size() + 2);
+        }
+        return std::string();
+    };
+    const auto object = [](int id, const std::string& parts) {
+        std::string text = "<object id='" + std::to_string(id) + "'><components>";
+        for (const char part : parts) text += "<component objectid='" + std::string(1, part) + "'/>";
+        return text + "</components></object>";
+    };
+    CHECK(complaint(triangle) == "");
+    CHECK(complaint(triangle + object(2, "11")) == "");
+    CHECK(complaint(triangle + object(2, "13") + object(3, "2")) == "object \"2\" contains itself");
+    CHECK(complaint(triangle + object(2, "17")) == "a component is object \"7\", which does not exist");
+    std::string doubling = triangle, chain = triangle;
+    for (int id = 2; id < 40; ++id) {
+        const std::string half = "<component objectid='" + std::to_string(id - 1) + "'/>";
+        doubling += "<object id='" + std::to_string(id) + "'><components>" + half + half + "</components></object>";
+    }
+    CHECK(complaint(doubling) ==
+          "its components repeat triangles to more than 100000000, needs fewer; remove components");
+    for (int id = 2; id < 2000; ++id)
+        chain += "<object id='" + std::to_string(id) + "'><components><component objectid='" + std::to_string(id - 1) +
+                 "'/></components></object>";
+    CHECK_THAT(complaint(chain), Contains("nested more than 1000 deep"));
+    CHECK_THAT(complaint(triangle, std::string(101000000, ' ')),
+               Contains(" bytes unpack to 101 MB, needs at most 100"));
+    CHECK(complaint(triangle, std::string(99000000, ' ')) == "");
 }

@@ -85,7 +85,8 @@ struct RobotOptions {
     std::vector<std::filesystem::path> model_paths = {};
     /// Positions of joints of a URDF or SDF model. All other joints are at 0, or follow the joint that they mimic.
     std::vector<JointPosition> joints = {};
-    int mesh_parts = 1;  ///< largest number of convex parts for each mesh collision, 1 .. 64; 1: its convex hull
+    int mesh_parts = 1;     ///< largest number of convex parts for each mesh collision, 1 .. 64; 1: its convex hull
+    bool any_mesh = false;  ///< see SceneOptions::any_mesh
 };
 
 /// Reads robot.yaml (format spawnfield-robot/1), a .urdf, an SDF model (.sdf, or the folder with its model.config), or

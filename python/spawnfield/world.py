@@ -21,7 +21,7 @@ File = str | os.PathLike[str]
 
 #: Options of `bake` that say how a scene file is read.
 _SCENE_OPTIONS = ("label", "auto_label", "up", "scale", "heightmap", "unknown", "wall_height", "strict",
-                  "allow_missing", "model_path")  # fmt: skip
+                  "allow_missing", "model_path", "any_mesh")  # fmt: skip
 #: Options that say how a robot's file is read.
 _ROBOT_OPTIONS = ("joints", "mesh_parts")
 #: Options that decide how a robot comes to rest.

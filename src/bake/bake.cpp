@@ -58,14 +58,17 @@ void keep_foreign_files(const fs::path& old, const fs::path& now, const std::str
 
 double default_resolution(const Bounds& bounds, BakeReport& report)
 {
+    constexpr double usual_extent = 20000;  // m; a larger world is most likely in wrong units: not worth much memory
+    const double extent = (bounds.max - bounds.min).head<2>().maxCoeff();
+    const double most = extent > usual_extent ? max_columns / 4 : max_columns;
     double resolution = 0.1;
     const auto side = [&](int axis) { return std::ceil((bounds.max[axis] - bounds.min[axis]) / resolution); };
-    while (side(0) * side(1) > max_columns || std::max(side(0), side(1)) > max_side) resolution *= 2;
+    while (side(0) * side(1) > most || std::max(side(0), side(1)) > max_side) resolution *= 2;
     if (resolution > 0.1)
-        report.notices.push_back(
-            "resolution is " + number(resolution) +
-            " m, because 0.1 m would give more than 100 million columns, or more than a million along one side; "
-            "--resolution sets it");
+        report.notices.push_back("resolution is " + number(resolution) + " m, because 0.1 m would give more than " +
+                                 std::to_string(std::int64_t(most / 1e6)) +
+                                 " million columns, or more than a million along one side; "
+                                 "--resolution sets it");
     return resolution;
 }
 

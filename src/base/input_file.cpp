@@ -1,3 +1,5 @@
+#include "base/input_watch.h"
+
 #include <spawnfield/error.h>
 #include <spawnfield/input_file.h>
 
@@ -33,6 +35,7 @@ void require_file(const fs::path& file)
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
     if (status.type() != fs::file_type::regular) throw FileError(file.string(), complaint_about(status.type(), error));
+    count_input(file);
 }
 
 namespace {

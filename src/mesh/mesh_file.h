@@ -25,17 +25,25 @@ struct FileMesh {
     std::vector<std::string> notices;  ///< about content that is not read; each begins with the file name
 };
 
-/// Reads a mesh in any format that assimp reads. Throws FileError for a file that is missing, malformed or without
-/// triangles, that has coordinates which are not finite, or for a glTF that assimp would read wrongly
-/// (mesh_reader/gltf_file.h).
-FileMesh read_mesh(const std::filesystem::path& file);
+/// The formats of mesh files that may be read: those of the tests (glTF, OBJ, STL, PLY, COLLADA, FBX, 3DS, OFF, 3MF),
+/// or all that assimp reads.
+enum class MeshFormats { Tested, Any };
+
+/// Reads a mesh. Throws FileError for a file that is missing, malformed, of another format or without triangles, that
+/// has coordinates which are not finite, or for a glTF that assimp would read wrongly (mesh_reader/gltf_file.h).
+FileMesh read_mesh(const std::filesystem::path& file, MeshFormats formats);
 
 /// Returns the version of assimp, for example "5.2.4".
 std::string mesh_reader_version();
 
+/// Returns the formats that an option `any_mesh` stands for.
+inline MeshFormats mesh_formats(bool any_mesh) { return any_mesh ? MeshFormats::Any : MeshFormats::Tested; }
+
 /// Reads each file once for all parts that use it, and keeps it in memory until the last of them has read it.
 class MeshFiles {
 public:
+    explicit MeshFiles(MeshFormats formats) : formats_(formats) {}
+
     /// Announces one call of read() for this file.
     void expect(const std::filesystem::path& file) { ++files_[file].remaining_uses; }
     /// Returns the mesh; throws FileError as read_mesh().
@@ -46,6 +54,7 @@ private:
         std::size_t remaining_uses = 0;
         std::shared_ptr<const FileMesh> mesh;
     };
+    MeshFormats formats_;
     std::map<std::filesystem::path, Entry> files_;
 };
 

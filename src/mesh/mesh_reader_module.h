@@ -7,7 +7,7 @@
 namespace spawnfield::mesh_reader_module {
 
 // They do the work of read_mesh() and mesh_reader_version().
-FileMesh read(const std::filesystem::path& file);
+FileMesh read(const std::filesystem::path& file, MeshFormats formats);
 std::string version();
 
 /// The functions that the module exports.

@@ -1,4 +1,5 @@
 #include "base/input_file.h"
+#include "base/input_watch.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "mesh_reader/gltf_file.h"
@@ -50,7 +51,9 @@ public:
 
     Assimp::IOStream* Open(const char* file, const char* mode) override
     {
-        return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+        if (!Exists(file)) return nullptr;
+        count_input(file);
+        return DefaultIOSystem::Open(file, mode);
     }
 };
 
@@ -220,14 +223,14 @@ void check_triangles(const aiScene& scene, std::size_t expected, const std::stri
 
 }  // namespace
 
-FileMesh mesh_reader_module::read(const std::filesystem::path& file)
+FileMesh mesh_reader_module::read(const std::filesystem::path& file, MeshFormats formats)
 {
     require_file(file);
     const std::string extension = lower_case(file.extension().string());
     ObjText obj = extension == ".obj" ? readable_obj(read_file(file)) : ObjText{};
     std::string text;  // replaces that of the file if not empty; must outlive the importer
     Assimp::Importer importer;
-    text = prepare_import(file, importer);
+    text = prepare_import(file, formats, importer);
     if (extension == ".obj") text = std::move(obj.text);
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
     GltfFacts gltf = is_gltf ? examine_gltf(file) : GltfFacts{};

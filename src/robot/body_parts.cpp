@@ -38,7 +38,7 @@ void append_ellipsoid(Robot& robot, const CollisionBody& body, const std::string
 }
 
 void append_mesh_body(Robot& robot, const CollisionBody& body, ModelPaths& paths, const std::string& file,
-                      int most_parts)
+                      const RobotOptions& options)
 {
     const CollisionGeometry& geometry = body.geometry;
     const std::filesystem::path found = paths.find(geometry.uri, geometry.folder);
@@ -49,9 +49,9 @@ void append_mesh_body(Robot& robot, const CollisionBody& body, ModelPaths& paths
                  "in the folders above the file; add its folder to --model-path or fix the URI");
     try {
         // Like Gazebo, this applies the <unit> of a COLLADA file and ignores its <up_axis>.
-        const FileMesh mesh = submesh_of(read_mesh(found), geometry, found.string());
+        const FileMesh mesh = submesh_of(read_mesh(found, mesh_formats(options.any_mesh)), geometry, found.string());
         robot.notices.insert(robot.notices.end(), mesh.notices.begin(), mesh.notices.end());
-        append_mesh(robot, {body.names[1], found, placed(mesh.nodes, geometry.size, body.pose)}, most_parts);
+        append_mesh(robot, {body.names[1], found, placed(mesh.nodes, geometry.size, body.pose)}, options.mesh_parts);
     } catch (const std::domain_error& error) {
         fail(body, file,
              "<mesh> cannot be used: " + found.string() + ": its convex hull has no volume: " + error.what());
@@ -62,10 +62,11 @@ void append_mesh_body(Robot& robot, const CollisionBody& body, ModelPaths& paths
 
 }  // namespace
 
-void append_body(Robot& robot, const CollisionBody& body, ModelPaths& paths, const std::string& file, int most_parts)
+void append_body(Robot& robot, const CollisionBody& body, ModelPaths& paths, const std::string& file,
+                 const RobotOptions& options)
 {
     const CollisionGeometry& geometry = body.geometry;
-    if (geometry.kind == Kind::Mesh) return append_mesh_body(robot, body, paths, file, most_parts);
+    if (geometry.kind == Kind::Mesh) return append_mesh_body(robot, body, paths, file, options);
     if (geometry.kind == Kind::Unknown && (geometry.element.empty() || geometry.element == "empty")) return;
     if (const std::optional<Shape> shape = shape_of(geometry, body.pose)) {
         RobotPart part;

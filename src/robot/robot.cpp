@@ -97,19 +97,20 @@ Robot box_robot(const std::string& argument)
     return {argument, {part}, {}, {}};
 }
 
-void append_mesh_part(Robot& robot, const YamlMap& map, const std::filesystem::path& folder, int mesh_parts)
+void append_mesh_part(Robot& robot, const YamlMap& map, const std::filesystem::path& folder,
+                      const RobotOptions& options)
 {
     const std::filesystem::path file = folder / map.text("mesh");
     const Vec3 scale = map.scale();
     const char chosen_up = map.has("up") ? map.one_of("up", {"y", "z"}, "z")[0] : char{0};
     try {
-        FileMesh mesh = read_mesh(file);
+        FileMesh mesh = read_mesh(file, mesh_formats(options.any_mesh));
         const char up = chosen_up != 0 ? chosen_up : mesh.up;
         for (FileMesh::Node& node : mesh.nodes)
             for (Vec3& vertex : node.vertices) vertex = turned_up(vertex.cwiseProduct(scale), up);
         robot.notices.insert(robot.notices.end(), mesh.notices.begin(), mesh.notices.end());
         append_mesh(robot, {map.text("name", ""), file, placed(std::move(mesh.nodes), Vec3::Ones(), map.pose())},
-                    mesh_parts);
+                    options.mesh_parts);
     } catch (const std::domain_error& error) {
         map.fail("mesh", "cannot be used: " + file.string() + ": its convex hull has no volume: " + error.what());
     } catch (const FileError& error) {
@@ -117,13 +118,13 @@ void append_mesh_part(Robot& robot, const YamlMap& map, const std::filesystem::p
     }
 }
 
-void append_part(Robot& robot, const YamlMap& map, const std::filesystem::path& folder, int mesh_parts)
+void append_part(Robot& robot, const YamlMap& map, const std::filesystem::path& folder, const RobotOptions& options)
 {
     const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "mesh"},
                                       {"name", "xyz", "rpy", "rpy_deg", "scale", "up"});
     if (kind == "mesh") {
         map.only({"name", "mesh", "xyz", "rpy", "rpy_deg", "scale", "up"});
-        append_mesh_part(robot, map, folder, mesh_parts);
+        append_mesh_part(robot, map, folder, options);
         return;
     }
     map.only({"name", "xyz", "rpy", "rpy_deg", kind.c_str()});
@@ -149,7 +150,7 @@ RobotDrive read_drive(const YamlMap& map)
     return out;
 }
 
-Robot read_robot_yaml(const std::filesystem::path& file, int mesh_parts)
+Robot read_robot_yaml(const std::filesystem::path& file, const RobotOptions& options)
 {
     const YamlMap root = read_yaml(file, "spawnfield-robot/1");
     root.only(
@@ -158,7 +159,7 @@ Robot read_robot_yaml(const std::filesystem::path& file, int mesh_parts)
     robot.name = root.text("name", file.stem().string());
     std::size_t count = 0;
     for (const YAML::Node& node : root.list("parts"))
-        append_part(robot, {node, file.string(), "part " + std::to_string(++count)}, file.parent_path(), mesh_parts);
+        append_part(robot, {node, file.string(), "part " + std::to_string(++count)}, file.parent_path(), options);
     if (robot.parts.empty()) root.fail("parts", "is empty, needs at least one part");
     if (root.has("contacts")) robot.contacts = root.vectors("contacts");
     if (root.has("mass_center")) robot.mass_center = root.vector("mass_center");
@@ -178,7 +179,7 @@ Robot read_model_robot(const std::filesystem::path& file_or_folder, const RobotO
     robot.notices = std::move(model.notices);
     if (model.mass > 0) robot.mass_center = model.mass_moment / model.mass;
     robot.drive.wheel_radius = wheel_radius_of(model);
-    for (const CollisionBody& body : model.bodies) append_body(robot, body, paths, file.string(), options.mesh_parts);
+    for (const CollisionBody& body : model.bodies) append_body(robot, body, paths, file.string(), options);
     if (robot.parts.empty())
         throw FileError(file.string(), "has no <collision>, needs at least one (<visual> elements are not used)");
     return robot;
@@ -202,7 +203,7 @@ Robot read_robot(const std::string& robot, const RobotOptions& options)
     if (!options.joints.empty())
         throw ArgumentError("load_robot",
                             "joint \"" + options.joints[0].joint + "\" is given, but " + robot + " has no joints");
-    return read_robot_yaml(file, options.mesh_parts);
+    return read_robot_yaml(file, options);
 }
 
 /// Returns how to convert a robot to metres. `text` is the robot as the user gave it.

@@ -76,7 +76,8 @@ Scene read_mesh_scene(const fs::path& file, Scene scene, Label fallback, const S
     mesh.rules = face_rules(options.labels);
     mesh.auto_slope = options.auto_slope;
     const std::uint32_t part = add_part(scene, scene.name, "mesh", fallback);
-    note_unused_rules(file, options.labels, names_of(append_mesh(scene, part, read_mesh(file), mesh)), scene);
+    note_unused_rules(file, options.labels,
+                      names_of(append_mesh(scene, part, read_mesh(file, mesh_formats(options.any_mesh)), mesh)), scene);
     return scene;
 }
 

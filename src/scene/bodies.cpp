@@ -67,7 +67,8 @@ std::vector<Vec3> plane_in_box(const Pose& pose, const Bounds& box)
 class BodyAppender {
 public:
     BodyAppender(Scene& scene, const fs::path& file, ModelPaths& paths, const SceneOptions& options, bool is_incomplete)
-        : scene_(scene), file_(file), paths_(paths), options_(options), is_incomplete_(is_incomplete)
+        : scene_(scene), file_(file), paths_(paths), options_(options), is_incomplete_(is_incomplete),
+          meshes_(mesh_formats(options.any_mesh))
     {
     }
 

@@ -3,6 +3,7 @@
 #include "base/coordinate_system.h"
 #include "base/geotiff.h"
 #include "base/input_file.h"
+#include "base/input_watch.h"
 #include "base/number.h"
 #include "base/png.h"
 #include "base/tiff.h"
@@ -44,6 +45,7 @@ void invert(HeightFile& found)
 
 HeightFile read_geotiff(const std::filesystem::path& file, bool wants_frame, std::vector<std::string>& notices)
 {
+    const ForeignReading reading("TIFF reader", file);
     HeightFile out;
     out.image = read_grey_tiff(file, max_heights);
     const GeoTags tags = read_geo_tags(file);

@@ -1,6 +1,7 @@
 #include "scene/octomap_file.h"
 
 #include "base/input_file.h"
+#include "base/input_watch.h"
 #include "base/number.h"
 
 #include <spawnfield/error.h>
@@ -131,6 +132,7 @@ std::unique_ptr<octomap::OcTree> read_full(const std::filesystem::path& file)
 
 std::unique_ptr<octomap::OcTree> read_octomap(const std::filesystem::path& file)
 {
+    const ForeignReading reading("OctoMap reader", file);
     const std::string extension = file.extension().string();
     return extension == ".ot" || extension == ".OT" ? read_full(file) : read_binary(file);
 }

@@ -240,7 +240,7 @@ Scene read_scene_yaml(const fs::path& file, const SceneOptions& options)
     Scene scene;
     scene.name = root.text("name", file.stem().string());
     std::set<std::string> part_names;
-    SceneFile common{file.parent_path(), options, {}, {}};
+    SceneFile common{file.parent_path(), options, MeshFiles(mesh_formats(options.any_mesh)), {}};
     for (const YAML::Node& node : root.list("parts"))
         if (node.IsMap() && node["mesh"] && node["mesh"].IsScalar())
             common.meshes.expect(common.folder / node["mesh"].Scalar());

@@ -84,7 +84,7 @@ void open_world(const AuditArgs& args, const CLI::App& command, Summary& summary
     reading.bounds = baking.bounds;
     reading.allow_missing = !args.strict;  // what is missing is a finding
     const Scene* const scene_in_memory = args.host->input<Scene>(args.map);
-    const Scene scene = scene_in_memory != nullptr ? *scene_in_memory : load_scene(args.map, reading);
+    const Scene scene = scene_in_memory != nullptr ? *scene_in_memory : read_scene(args, args.map, reading);
     std::vector<std::string> other = scene.notices;
     std::erase_if(other, [&](const std::string& text) {
         return std::find(scene.missing.begin(), scene.missing.end(), text) != scene.missing.end();
@@ -251,6 +251,7 @@ void add_audit(CLI::App& app, ChosenCommand& chosen)
         command.remove_option(command.get_option(option));
     start_group(command, help_group::robot);
     add_model_path(command, *args);
+    add_trusted(command, *args);
     add_robot_options(command, *args);
     add_common(command, *args);
     add_allow_empty(command, *args);

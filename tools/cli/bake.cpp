@@ -76,6 +76,7 @@ void add_bake(CLI::App& app, ChosenCommand& chosen)
         ->check(not_empty());
     add_label_options(command, *args);
     add_model_path(command, *args);
+    add_trusted(command, *args);
     command.add_option("--resolution", args->resolution, "Side of a terrain cell, m (default 0.1)");
     command.add_option("--occupancy-resolution", args->occupancy_resolution, "Side of a voxel, m (default 2.5 cells)");
     command.add_option("--bounds", args->bounds,

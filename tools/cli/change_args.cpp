@@ -79,7 +79,7 @@ std::string free_name(const std::string& name, const Map& map)
 Map with_robot(const CommonArgs& common, const PlacedRobot& placed, const RobotOptions& options,
                const std::string& text, const Map& map)
 {
-    const Robot robot = load_robot(placed.robot, options);
+    const Robot robot = read_robot(common, placed.robot, options);
     notices(common, robot.notices);
     const std::string name = placed.robot.starts_with("box:") ? "box" : robot.name;
     Scene obstacle = robot_as_obstacle(robot, pose_of(placed, robot, map, text), free_name(name, map));
@@ -90,7 +90,7 @@ Map with_robot(const CommonArgs& common, const PlacedRobot& placed, const RobotO
 /// Reads a scene of --with.
 Scene read_extra(const CommonArgs& common, const SceneOptions& options, const std::string& file)
 {
-    Scene extra = load_scene(file, options);
+    Scene extra = read_scene(common, file, options);
     notices(common, extra.notices);
     return extra;
 }
@@ -159,23 +159,24 @@ void add_changes(CLI::App& command, ChangeArgs& args)
         ->check(not_empty());
 }
 
-Map changed_map(const CommonArgs& common, const ChangeArgs& args, const std::vector<std::string>& model_paths, Map map)
+Map changed_map(const CommonArgs& common, const ChangeArgs& args, const ModelPathArgs& models, Map map)
 {
     try {
         map = without_parts(map, globs_of(args.without, map), common.threads);
     } catch (const ArgumentError& error) {
         throw ArgumentError(std::string("--without ") + error.message());
     }
-    const std::vector<fs::path> folders(model_paths.begin(), model_paths.end());
+    const std::vector<fs::path> folders(models.model_paths.begin(), models.model_paths.end());
     const TimeWindow time = args.time.empty() ? TimeWindow{} : parse_time(args.time);
     bool has_moving_parts = false;
     for (const std::string& text : args.with) {
         const std::optional<PlacedRobot> robot = parse_robot(common, text);
         if (robot) {
-            map = with_robot(common, *robot, {.model_paths = folders}, text, map);
+            map = with_robot(common, *robot, {.model_paths = folders, .any_mesh = models.any_mesh}, text, map);
             continue;
         }
-        Scene extra = read_extra(common, {.model_paths = folders, .bounds = map.bounds, .time = time}, text);
+        Scene extra = read_extra(
+            common, {.model_paths = folders, .any_mesh = models.any_mesh, .bounds = map.bounds, .time = time}, text);
         has_moving_parts |= extra.has_moving_parts;
         const std::string when = extra.has_moving_parts && !args.time.empty() ? " at " + args.time + " s" : "";
         map = with_scene(common, std::move(extra), text, when, map);

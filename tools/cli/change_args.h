@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common_args.h"
+#include "model_path.h"
 
 #include <spawnfield/changes.h>
 
@@ -23,6 +24,6 @@ inline const std::vector<std::string> change_option_names{"--with", "--without",
 
 /// Returns the map with all changes. Prints the notices of the files, and those about parts off the map and about a map
 /// without terrain. Throws ArgumentError, FileError.
-Map changed_map(const CommonArgs& common, const ChangeArgs& args, const std::vector<std::string>& model_paths, Map map);
+Map changed_map(const CommonArgs& common, const ChangeArgs& args, const ModelPathArgs& models, Map map);
 
 }  // namespace spawnfield::cli

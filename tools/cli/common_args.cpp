@@ -17,6 +17,14 @@ void add_common(CLI::App& command, CommonArgs& args)
     command.add_option("--summary", args.summary, "JSON file to which the summary is written (- for standard output)");
 }
 
+void add_trusted(CLI::App& command, CommonArgs& args)
+{
+    command.add_flag(
+        "--trusted", args.trusted,
+        "Read the files of scenes and robots in this process. By default, a process of its own reads them, "
+        "with limits of memory and time, because damaged or hostile files can crash the libraries for them");
+}
+
 void add_allow_empty(CLI::App& command, CommonArgs& args)
 {
     command.add_flag("--allow-empty", args.allow_empty, "Accept a file of poses that has a header but no pose");

@@ -18,6 +18,7 @@ struct CommonArgs {
     int threads = 0;
     bool quiet = false;
     std::string summary;
+    bool trusted = false;      ///< read scenes and robots in this process; set by --trusted
     bool allow_empty = false;  ///< files of poses may contain no pose; set by --allow-empty
 };
 
@@ -34,6 +35,9 @@ void start_group(CLI::App& command, const std::string& name);
 
 /// Adds --threads, --quiet and --summary.
 void add_common(CLI::App& command, CommonArgs& args);
+
+/// Adds --trusted, for commands that read scenes or robots.
+void add_trusted(CLI::App& command, CommonArgs& args);
 
 /// Adds --allow-empty, for commands that read poses.
 void add_allow_empty(CLI::App& command, CommonArgs& args);

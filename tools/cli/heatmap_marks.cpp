@@ -120,7 +120,7 @@ KindRobots read_spawns(const QueryArgs& query, const HeatmapMarkArgs& args, Heat
     picture.spawn_kinds = kinds_of(table, args, fleet);
     KindRobots robots;
     for (const FleetFileKind& kind : fleet.kinds) {
-        robots.push_back(std::make_unique<const Robot>(load_robot(kind.robot, robot_options(query))));
+        robots.push_back(std::make_unique<const Robot>(read_robot(query, kind.robot, robot_options(query))));
         picture.kinds.push_back({kind.name, robots.back().get()});
     }
     return robots;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <spawnfield/reader_process.h>
 #include <spawnfield/types.h>
 
 #include <any>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -37,6 +39,9 @@ public:
     virtual void flush() = 0;
     /// Takes the summary of a command: a line for people, and JSON. `is_quiet`: --quiet was given.
     virtual void summarize(const std::string& line, const std::string& json, bool is_quiet) = 0;
+
+    /// Reads scenes and robots for commands without --trusted. Nothing: they are read in this process.
+    std::optional<ReaderProcess> reader;
 
     /// Things in memory that the caller gave in place of files. Their names stand where those of files would. A value
     /// is a std::shared_ptr<const T>, where T is Map, Robot, Scene or PoseTable.

@@ -629,6 +629,7 @@ void add_info(CLI::App& app, ChosenCommand& chosen)
     add_changes(command, *args);
     add_label_options(command, *args);
     add_model_path(command, *args);
+    add_trusted(command, *args);
     add_scene_options(command, *args);
     start_group(command, help_group::robot);
     add_robot_options(command, *args);

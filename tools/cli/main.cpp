@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <filesystem>
+#include <iostream>
 
 namespace {
 
@@ -35,6 +37,8 @@ int run_guarded(const CLI::App& app, const ChosenCommand& chosen)
         return failed(input_refused, error.what());
     } catch (const std::bad_alloc&) {
         return failed(failure, "out of memory; a coarser --resolution or --step, or smaller --bounds, needs less");
+    } catch (const std::filesystem::filesystem_error& error) {  // a loop of links, a folder without permission
+        return failed(input_refused, error.path1().string() + ": cannot be reached: " + error.code().message());
     } catch (const std::exception& error) {
         return failed(failure, error.what());
     }
@@ -77,7 +81,11 @@ bool has_unknown_command(const std::vector<std::string>& names, int argc, char**
 
 int main(int argc, char** argv)
 {
+    if (const std::optional<int> status = serve_reader(argc, argv)) return *status;
     Terminal terminal;
+    terminal.reader = ReaderProcess{"/proc/self/exe", [&] {
+                                        if (terminal.is_interrupted()) throw Interrupted{};
+                                    }};
     ChosenCommand chosen{.host = &terminal};
     CLI::App app;
     add_commands(app, command_line(argc, argv), chosen);
@@ -91,7 +99,10 @@ int main(int argc, char** argv)
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         const std::string words = error.get_exit_code() == 0 ? "" : unknown_option(app);
-        if (words.empty()) return app.exit(error) == 0 ? done : wrong_usage;
+        if (words.empty()) {
+            const bool is_answer = app.exit(error) == 0;  // --help, --version
+            return !is_answer ? wrong_usage : std::cout.flush() ? done : failure;
+        }
         terminal.complain(words + "\nRun with --help for more information.");
         return wrong_usage;
     }

@@ -7,11 +7,13 @@
 
 namespace spawnfield::cli {
 
-/// Folders with models and ROS packages, for scenes and robots.
+/// How models are found and read, for scenes and robots.
 struct ModelPathArgs {
     std::vector<std::string> model_paths;
+    bool any_mesh = false;
 };
 
+/// Adds --model-path and --any-mesh.
 inline void add_model_path(CLI::App& command, ModelPathArgs& args)
 {
     command
@@ -20,6 +22,9 @@ inline void add_model_path(CLI::App& command, ModelPathArgs& args)
                     "GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH and the folders above the file are searched after it")
         ->allow_extra_args(false)
         ->check(CLI::ExistingDirectory);
+    command.add_flag("--any-mesh", args.any_mesh,
+                     "Read meshes in all formats that assimp reads, not only 3ds, 3mf, dae, fbx, glb, gltf, obj, off, "
+                     "ply and stl");
 }
 
 }  // namespace spawnfield::cli

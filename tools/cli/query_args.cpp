@@ -146,6 +146,7 @@ void add_robot_and_run(CLI::App& command, QueryArgs& args)
     add_changes(command, args);
     start_group(command, help_group::robot);
     add_model_path(command, args);
+    add_trusted(command, args);
     add_robot_options(command, args);
     add_common(command, args);
     command.add_flag("--exhaustive", args.exhaustive,

@@ -42,6 +42,7 @@ RobotOptions robot_options(const RobotArgs& args)
     options.model_paths.assign(args.model_paths.begin(), args.model_paths.end());
     for (const std::string& joints : args.joints) parse_joints(joints, options.joints);
     options.mesh_parts = args.mesh_parts;
+    options.any_mesh = args.any_mesh;
     return options;
 }
 

@@ -79,6 +79,7 @@ SceneOptions scene_options(const SceneArgs& args, const ModelPathArgs& paths)
     options.heightmap = args.heightmap;
     if (args.wall_height) options.wall_height = parse_positive("--wall-height", *args.wall_height);
     options.model_paths.assign(paths.model_paths.begin(), paths.model_paths.end());
+    options.any_mesh = paths.any_mesh;
     options.strict = args.strict;
     options.allow_missing = args.allow_missing;
     return options;

@@ -47,7 +47,7 @@ Session open_session(const QueryArgs& args, Summary& summary)
     const Map* const in_memory = args.host->input<Map>(args.map);
     session.map = in_memory != nullptr ? *in_memory : read_map(args.map);
     notice_if_old(args, session.map);
-    if (args.has_changes()) session.map = changed_map(args, args, args.model_paths, std::move(session.map));
+    if (args.has_changes()) session.map = changed_map(args, args, args, std::move(session.map));
     summary.map_hash = session.map.hash;
     summary.changes = session.map.changes;
     if (args.robot.empty()) return session;
@@ -56,10 +56,22 @@ Session open_session(const QueryArgs& args, Summary& summary)
     return session;
 }
 
+Robot read_robot(const CommonArgs& args, const std::string& file, const RobotOptions& options)
+{
+    const bool is_apart = args.host->reader && !args.trusted;
+    return is_apart ? load_robot_apart(file, options, *args.host->reader) : load_robot(file, options);
+}
+
+Scene read_scene(const CommonArgs& args, const std::string& file, const SceneOptions& options)
+{
+    const bool is_apart = args.host->reader && !args.trusted;
+    return is_apart ? load_scene_apart(file, options, *args.host->reader) : load_scene(file, options);
+}
+
 Robot open_robot(const CommonArgs& args, const std::string& file, const RobotOptions& options)
 {
     if (const Robot* const robot = args.host->input<Robot>(file)) return *robot;
-    Robot robot = load_robot(file, options);
+    Robot robot = read_robot(args, file, options);
     notices(args, robot.notices);
     return robot;
 }
@@ -67,7 +79,7 @@ Robot open_robot(const CommonArgs& args, const std::string& file, const RobotOpt
 Scene open_scene(const CommonArgs& args, const std::string& file, const SceneOptions& options)
 {
     if (const Scene* const scene = args.host->input<Scene>(file)) return *scene;
-    Scene scene = load_scene(file, options);
+    Scene scene = read_scene(args, file, options);
     notices(args, scene.notices);
     return scene;
 }

@@ -22,6 +22,10 @@ struct Session {
 /// of range, before it reads anything.
 Session open_session(const QueryArgs& args, Summary& summary);
 
+/// Reads a robot or a scene; in a process of its own, if the host has one and --trusted was not given.
+Robot read_robot(const CommonArgs& args, const std::string& file, const RobotOptions& options);
+Scene read_scene(const CommonArgs& args, const std::string& file, const SceneOptions& options);
+
 /// Reads a robot, and prints its notices. A robot in memory (Host::inputs) is used as it is.
 Robot open_robot(const CommonArgs& args, const std::string& file, const RobotOptions& options);
 

@@ -194,7 +194,7 @@ void SimulatorOutput::notice_about_model(const Robot& robot) const
     if (file.empty() || robot.parts.empty() || fs::equivalent(file, target_.robot, ignored)) return;
     double lowest = 0;
     try {
-        lowest = load_robot(file.string(), {.model_paths = target_.reading.model_paths}).bounds().min.z();
+        lowest = read_robot(common_, file.string(), {.model_paths = target_.reading.model_paths}).bounds().min.z();
     } catch (const FileError&) {
         return;  // the simulator may still be able to read it
     }

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "base/input_watch.h"
+
+#include <set>
+
+namespace spawnfield {
+
+/// This build has a sanitizer, whose own memory is much larger than any limit, and which is slow.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool is_sanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+inline constexpr bool is_sanitized = true;
+#else
+inline constexpr bool is_sanitized = false;
+#endif
+#else
+inline constexpr bool is_sanitized = false;
+#endif
+
+/// What a reader process tells its parent while it works, in memory that both share, so that the parent can read it
+/// after a crash.
+struct ReaderStatus {
+    std::uint64_t answer_bytes = 0;
+    double seconds = 0;            ///< limit of processor time, s
+    double gigabytes = 0;          ///< limit of memory, GB
+    char reader[32] = {};          ///< the foreign library that reads, or that failed; empty: none
+    char file[4096 - 3 * 8 - 32];  ///< the file that it reads; ends in 0
+};
+static_assert(sizeof(ReaderStatus) == 4096);
+
+/// Limits the memory, the processor time and the stack of this process. The limits grow with the size of the files that
+/// it opens; each file counts once. Builds with a sanitizer have no limit of memory, because the sanitizer's own is
+/// much larger.
+class ReaderLimits : public InputWatch {
+public:
+    /// Sets the limits that hold while small files are read. `status` must live as long as this.
+    explicit ReaderLimits(ReaderStatus& status);
+
+    void opens(const std::filesystem::path& file, std::uint64_t bytes) override;
+    void begins(const char* reader, const std::filesystem::path& file) override;
+    void ends() override;
+
+private:
+    void set();
+
+    ReaderStatus& status_;
+    std::set<std::filesystem::path> files_;
+    std::uint64_t bytes_ = 0;       ///< of all files
+    const std::uint64_t at_start_;  ///< memory of this process when it began, bytes
+};
+
+}  // namespace spawnfield
