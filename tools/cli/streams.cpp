@@ -48,7 +48,7 @@ bool was_given(const CLI::App& command, const std::string& name)
 /// Returns whether the result goes to standard output by default.
 bool prints_by_default(const CLI::App& command)
 {
-    if (command.get_name() == "info") return true;
+    if (command.get_name() == "info" || command.get_name() == "clean") return true;
     const bool is_picture_alone = command.get_name() == "raster" && was_given(command, "--heatmap");
     return command.get_option_no_throw("--out") != nullptr && !was_given(command, "--out") && !is_picture_alone;
 }
