@@ -443,6 +443,7 @@ TEST_CASE("outputs that destroy nothing are not refused")
          {std::string("bake kept/scene.yaml -o kept --resolution 0.5"),
           std::string("bake kept/scene.yaml -o kept --resolution 0.5 --update '*'"),
           std::string("bake scene.yaml -o map --resolution 0.5 --update floor"),
+          std::string("bake scene.yaml -o map --resolution 0.5 --summary map/s.json"),
           "check map --poses poses.csv -o /dev/null --summary /dev/null" + husky,
           "check map --poses poses.csv -o map.csv" + husky, "check map --poses poses.csv -o mapped/../o.csv" + husky}) {
         CAPTURE(arguments);
@@ -450,4 +451,5 @@ TEST_CASE("outputs that destroy nothing are not refused")
         CHECK(run_program(desk, arguments + " -q").status == (has_no_folder ? 1 : 0));
     }
     CHECK(bytes_of(desk / "kept/scene.yaml") == scene);
+    CHECK(bytes_of(desk / "map/s.json").starts_with("{"));
 }

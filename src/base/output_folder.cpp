@@ -50,16 +50,22 @@ void link_all(const fs::path& from, const fs::path& to)
     if (error) throw OutputError(from.string(), "cannot be kept in the new folder: " + error.message());
 }
 
-/// Returns the entries that `keeps` selects. Results that are just being written into the folder are left out.
+/// Returns whether a killed run left this incomplete result. One of a living run will get its name in the new folder.
+bool is_left(const fs::path& path)
+{
+    const std::optional<TemporaryName> name = parse_temporary(path);
+    if (!name || name->kind != TemporaryKind::New) return false;
+    const Descriptor lock = open_in_place(path);
+    return lock && try_lock(lock) == LockResult::Taken;
+}
+
+/// Returns the entries that `keeps` selects, without what killed runs left.
 std::vector<fs::path> kept_names(const fs::path& folder, const std::function<bool(const fs::path&)>& keeps)
 {
     std::vector<fs::path> out;
     if (!keeps || !fs::is_directory(folder)) return out;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-        const std::optional<TemporaryName> temporary = parse_temporary(entry.path());
-        const bool is_new = temporary && temporary->kind == TemporaryKind::New;
-        if (!is_new && keeps(entry.path().filename())) out.push_back(entry.path().filename());
-    }
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+        if (keeps(entry.path().filename()) && !is_left(entry.path())) out.push_back(entry.path().filename());
     return out;
 }
 

@@ -50,32 +50,36 @@ stop() {
   echo "$status"
 }
 
-# The state of the map `map`: absent, complete or damaged.
+# The state of the map: absent, old, new or damaged.
 state_of_map() {
-  if [[ ! -e map ]]; then
+  if [[ ! -e results/map ]]; then
     echo absent
-  elif run info map --verify -q; then
-    echo complete
-  else
+  elif ! run info results/map --verify -q; then
     echo damaged
+  elif cmp -s results/map/map.yaml old/map/map.yaml; then
+    echo old
+  else
+    echo new
   fi
 }
 
-# The state of a file, compared with complete ones: absent, complete or damaged.
+# The state of a file: absent, old, new, interrupted (the first lines of the new one) or damaged.
 state_of_file() {
-  local file=$1 one
-  shift
-  [[ -e $file ]] || {
+  local size
+  if [[ ! -e results/$1 ]]; then
     echo absent
-    return
-  }
-  for one in "$@"; do
-    cmp -s "$file" "$one" && {
-      echo complete
-      return
-    }
-  done
-  echo damaged
+  elif cmp -s "results/$1" "old/$1"; then
+    echo old
+  elif cmp -s "results/$1" "new/$1"; then
+    echo new
+  else
+    size=$(stat -c %s "results/$1")
+    if [[ $(tail -c 1 "results/$1" | od -An -tx1 | tr -d ' ') == 0a ]] && cmp -s -n "$size" "results/$1" "new/$1"; then
+      echo interrupted
+    else
+      echo damaged
+    fi
+  fi
 }
 
 # only NAME...: the folder `results` contains these names and nothing else.
@@ -90,12 +94,12 @@ note() {
   130 | 137) count "$label: stopped" ;;
   *) failed "$label ended with status $status: $(cat run.err)" ;;
   esac
-  [[ $state != damaged ]] || failed "$label left a damaged result"
+  [[ $state != damaged && ($state != interrupted || $status == 130) ]] || failed "$label left a damaged result"
   count "$label: result $state"
   [[ -z "$(ls -A results | grep -E '\.(tmp|old)-')" ]] || count "$label: something was left"
 }
 
-mkdir results
+mkdir results old new
 bake=(bake "$scene" -o results/map --resolution 0.05 -q)
 run bake "$scene" -o base --resolution 0.2 -q || failed "the first bake: $(cat run.err)"
 sample=(sample base --robot "$robot" -n 200000 --stance level -q -o results/spawns.csv)
@@ -103,27 +107,27 @@ raster=(raster base --robot "$robot" --dims 2 --step 0.02 -q -o results/raster.c
 bake_time=$(duration "${bake[@]}")
 sample_time=$(duration "${sample[@]}")
 raster_time=$(duration "${raster[@]}")
-cp results/spawns.csv results/raster.csv .
+cp -a results/. new
+cp -a base old/map
+run sample base --robot "$robot" -n 1000 --seed 1 -q -o old/spawns.csv || failed "the old spawns: $(cat run.err)"
+run raster base --robot "$robot" --dims 2 --step 1 -q -o old/raster.csv || failed "the old raster: $(cat run.err)"
+
+# Puts the old results there: those of other options, so that they differ from the new ones.
+put_old() {
+  rm -rf results/map results/*.csv
+  [[ $1 == none ]] || cp -a old/. results
+}
 
 stopped_runs() { # SIGNAL NAME NUMBER
   local signal=$1 name=$2 number=$3 i status
   for ((i = 0; i < number; ++i)); do
-    ((i % 4 > 0)) || rm -rf results/map results/*.csv # also without an old result
-    status=$(stop "$signal" "$bake_time" "${bake[@]}")
-    ln -sfn results/map map
+    if ((i % 3 == 0)); then put_old none; else put_old all; fi
+    status=$(stop "$signal" $((bake_time * 5 / 4)) "${bake[@]}")
     note "$name of bake" "$status" "$(state_of_map)"
-    status=$(stop "$signal" "$sample_time" "${sample[@]}")
-    # An interrupted sample writes what it has found: the first lines of the complete list.
-    if [[ $status == 130 && -e results/spawns.csv ]]; then
-      head -c "$(stat -c %s results/spawns.csv)" spawns.csv >first.csv
-    else
-      cp spawns.csv first.csv
-    fi
-    note "$name of sample" "$status" "$(state_of_file results/spawns.csv spawns.csv first.csv last.csv)"
-    rm -f last.csv
-    [[ ! -e results/spawns.csv ]] || cp results/spawns.csv last.csv
-    status=$(stop "$signal" "$raster_time" "${raster[@]}")
-    note "$name of raster" "$status" "$(state_of_file results/raster.csv raster.csv)"
+    status=$(stop "$signal" $((sample_time * 5 / 4)) "${sample[@]}")
+    note "$name of sample" "$status" "$(state_of_file spawns.csv)"
+    status=$(stop "$signal" $((raster_time * 5 / 4)) "${raster[@]}")
+    note "$name of raster" "$status" "$(state_of_file raster.csv)"
     if ((i % 10 == 9 || i == number - 1)); then # the next normal runs
       run "${bake[@]}" && run "${sample[@]}" && run "${raster[@]}" || failed "a normal run: $(cat run.err)"
       count "$name: normal runs afterwards"
@@ -172,7 +176,7 @@ two_at_once() {
   fi
   local i first second
   for ((i = 0; i < 20; ++i)); do
-    ((i % 4 > 0)) || rm -rf results/map
+    if ((i % 4 == 0)); then rm -rf results/map; fi
     unshare --pid --fork "$program" "${bake[@]}" 2>first.err &
     first=$!
     unshare --pid --fork "$program" "${bake[@]}" 2>second.err &
@@ -180,10 +184,9 @@ two_at_once() {
     count "two bakes at once: pairs"
     wait "$first" || failed "the first of two bakes: $(cat first.err)"
     wait "$second" || failed "the second of two bakes: $(cat second.err)"
-    ln -sfn results/map map
-    [[ $(state_of_map) == complete ]] || failed "two bakes at once: the map is $(state_of_map)"
+    [[ $(state_of_map) == new ]] || failed "two bakes at once: the map is $(state_of_map)"
     if only map spawns.csv raster.csv; then
-      count "two bakes at once: one complete map and nothing else"
+      count "two bakes at once: one complete new map and nothing else"
     else
       failed "two bakes at once left $(ls -A results)"
     fi
