@@ -245,6 +245,33 @@ TEST_CASE("a folder that someone filled during the work is not replaced")
     CHECK(names_in(folder / "map") == Names{"diary"});
 }
 
+TEST_CASE("an old folder that cannot be removed is reported, and the new one is in its place")
+{
+    const TempFolder folder;
+    folder.write("map/locked/file", "old");
+    fs::permissions(folder / "map/locked", fs::perms(0555));
+    const pid_t child = fork();
+    if (child == 0) {
+        // The superuser can remove anything, so the child is nobody.
+        if (geteuid() == 0 && (chown(folder.path().c_str(), 65534, 65534) != 0 ||
+                               chown((folder / "map").c_str(), 65534, 65534) != 0 || setuid(65534) != 0))
+            _exit(2);
+        OutputFolder out(folder / "map", no_objection);
+        write_file_atomically(out.path() / "file", "new");
+        out.commit();
+        const bool is_right =
+            out.notices().size() == 1 && out.notices()[0].starts_with((folder / "map.old-").string()) &&
+            out.notices()[0].ends_with(", the former map, could not be removed: Permission denied; remove it by hand");
+        _exit(is_right ? 0 : 1);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    CHECK(status == 0);
+    CHECK(bytes_of(folder / "map/file") == "new");
+    for (const auto& entry : fs::directory_iterator(folder.path()))
+        if (fs::exists(entry.path() / "locked")) fs::permissions(entry.path() / "locked", fs::perms(0755));
+}
+
 TEST_CASE("clean lists, and then removes, what killed runs left")
 {
     const TempFolder folder;

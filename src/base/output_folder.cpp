@@ -28,12 +28,13 @@ void refuse_foreign(const fs::path& target, const std::function<std::string(cons
     if (!reason.empty()) throw OutputError(target.string(), reason + "; choose another name or remove it");
 }
 
-/// Gives a file a second name. A file system without hard links gets a copy.
+/// Gives a file a second name. A file system without hard links gets a copy. A file of another file system, which is
+/// mounted below the folder, is an error: it would be deleted with the old folder.
 void link_or_copy(const fs::path& from, const fs::path& to, std::error_code& error)
 {
     if (fs::is_symlink(from)) return fs::copy_symlink(from, to, error);
     fs::create_hard_link(from, to, error);
-    if (error && fs::is_regular_file(from)) fs::copy_file(from, to, error);
+    if (error && error != std::errc::cross_device_link && fs::is_regular_file(from)) fs::copy_file(from, to, error);
 }
 
 void link_all(const fs::path& from, const fs::path& to)

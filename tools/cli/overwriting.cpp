@@ -78,13 +78,15 @@ std::vector<NamedPath> inputs_of(const CLI::App& command)
     return out;
 }
 
-/// Pipes and devices cannot be destroyed, and what is behind /dev/stdout keeps its content.
-bool is_direct(const std::string& value, const fs::path& path)
+/// Returns whether the output destroys nothing: it is a pipe or a device, or a file behind /dev/stdout, which keeps its
+/// content.
+bool is_harmless(const std::string& value)
 {
     std::error_code ignored;
     const std::string name = fs::absolute(value, ignored).lexically_normal().string();
-    return name.starts_with("/dev/") || name.starts_with("/proc/") ||
-           (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored) && !fs::is_directory(path, ignored));
+    const bool is_of_system = name.starts_with("/dev/") || name.starts_with("/proc/");
+    return (is_of_system && fs::is_symlink(name, ignored)) ||
+           (fs::exists(value, ignored) && !fs::is_regular_file(value, ignored) && !fs::is_directory(value, ignored));
 }
 
 std::vector<NamedPath> outputs_of(const CLI::App& command)
@@ -92,7 +94,7 @@ std::vector<NamedPath> outputs_of(const CLI::App& command)
     std::vector<NamedPath> out;
     for (const char* const option : output_options)
         for (const std::string& value : values_of(command, option)) {
-            if (value.empty() || is_standard(value) || is_direct(value, without_links(value))) continue;
+            if (value.empty() || is_standard(value) || is_harmless(value)) continue;
             out.push_back({option, value, without_links(value)});
         }
     if (values_of(command, "--format") != std::vector<std::string>{"nav2"}) return out;
