@@ -4,8 +4,6 @@
 
 #include <spawnfield/leftovers.h>
 
-#include <algorithm>
-
 namespace spawnfield::cli {
 namespace {
 
