@@ -178,7 +178,7 @@ TEST_CASE("wrong usage ends with status 2, and the message names option, value a
         {"experiment map --dims 2 --steps 1" + husky, "--out is required" + hint},
         {"frob map",
          "spawnfield: frob is not a command; the commands are bake, info, check, raster, search, sample, heatmap, "
-         "export, audit, experiment"},
+         "export, audit, experiment, clean"},
         {sample + "-n 5 --seed -1", "--seed: -1 is not a whole number from 0 to 18446744073709551615" + hint},
     };
     for (const Refusal& refusal : refusals) desk.check(refusal, 2);
@@ -316,12 +316,14 @@ TEST_CASE("every command refuses a damaged map and names the file")
 
 TEST_CASE("output that cannot be written ends with status 1, and nothing remains of it")
 {
-    const Desk desk;
+    Desk desk;
     const std::string sample = "sample map -n 1 -q" + husky;
     desk.check(
         {sample + "-o none/spawns.csv", "spawnfield: none/spawns.csv: cannot be written: No such file or directory"},
         1);
-    desk.check({sample + "-o map", "spawnfield: map: cannot be written: is a folder"}, 1);
+    fs::create_directory(desk / "empty");
+    desk.remember();
+    desk.check({sample + "-o empty", "spawnfield: empty: cannot be written: is a folder"}, 1);
     desk.check({sample + "-o /dev/full", "spawnfield: /dev/full: cannot be written: No space left on device"}, 1);
     const ProgramRun full = run_program(desk, sample + ">/dev/full 2>err || (cat err >&2; rm err; exit 1)");
     CHECK(full.status == 1);
@@ -335,11 +337,12 @@ TEST_CASE("output that cannot be written ends with status 1, and nothing remains
     desk.check({"experiment map -q --dims 2 --steps 1 -o out" + husky,
                 "spawnfield: out: exists and is not a folder; choose another name or remove it"},
                1);
-    desk.check(
-        {"experiment map -q --dims 2 --steps 1 -o map" + husky,
-         "spawnfield: map: contains bounds.bin, which is not part of any former experiment; choose another name or "
-         "remove it"},
-        1);
+    desk.write("other/diary", "mine");
+    desk.remember();
+    desk.check({"experiment map -q --dims 2 --steps 1 -o other" + husky,
+                "spawnfield: other: contains diary, which is not part of any former experiment; choose another name "
+                "or remove it"},
+               1);
     desk.check({raster + "-o new.csv --heatmap none/new.png",
                 "spawnfield: none/new.png: cannot be written: No such file or directory"},
                1);
@@ -374,4 +377,98 @@ TEST_CASE("control characters of files reach the terminal as codes, and unreacha
     CHECK_THAT(name.err, Contains("aaa: cannot be reached: File name too long"));
     CHECK(run_program(folder, "--help >/dev/full").status == 1);
     CHECK(run_program(folder, "--version >/dev/full").status == 1);
+}
+
+TEST_CASE("an output that would destroy an input or another output is refused before all work")
+{
+    Desk desk;
+    desk.write("rules.yaml", "max_islands: 9\n");
+    desk.write("fleet.yaml", "robots: []\n");
+    desk.write("kept/scene.yaml", bytes_of(desk / "scene.yaml"));
+    desk.write("world.sdf", "<sdf/>");
+    fs::create_symlink("poses.csv", desk / "link.csv");
+    fs::create_hard_link(desk / "poses.csv", desk / "hard.csv");
+    fs::copy(desk / "map", desk / "kept", fs::copy_options::recursive);
+    desk.write("robot.yaml", bytes_of(source_folder() + "/maps/robots/husky.yaml"));
+    desk.remember();
+    const std::string sample = "sample map -n 1" + husky, check = "check map --poses poses.csv" + husky,
+                      same = "the same file as ", other = ", which is read; choose another name for the output",
+                      inside = ", which lies in the folder map that is read as the map; choose a name outside of it";
+    const std::string before_poses = bytes_of(desk / "poses.csv"), before_map = bytes_of(desk / "map/map.yaml"),
+                      before_kept = bytes_of(desk / "kept/occupancy.bt");
+    const Refusal refusals[] = {
+        {check + "-o poses.csv", "--out is poses.csv, " + same + "--poses" + other},
+        {check + "-o link.csv", "--out is link.csv, " + same + "--poses" + other},
+        {check + "-o hard.csv", "--out is hard.csv, " + same + "--poses" + other},
+        {check + "-o ./map/../poses.csv", "--out is ./map/../poses.csv, " + same + "--poses" + other},
+        {check + "-o out --repair 1 --repaired poses.csv", "--repaired is poses.csv, " + same + "--poses" + other},
+        {check + "-o out --summary poses.csv", "--summary is poses.csv, " + same + "--poses" + other},
+        {"check map --pairs poses.csv -o poses.csv" + husky, "--out is poses.csv, " + same + "--pairs" + other},
+        {sample + "-o map/map.yaml", "--out is map/map.yaml" + inside},
+        {sample + "-o map/new/spawns.csv", "--out is map/new/spawns.csv" + inside},
+        {sample + "-o out --summary map/s.json", "--summary is map/s.json" + inside},
+        {sample + "-o map", "--out is map, the same folder as the map" + other},
+        {sample + "-o map/", "--out is map/, the same folder as the map" + other},
+        {sample + "--avoid poses.csv -o poses.csv", "--out is poses.csv, " + same + "--avoid" + other},
+        {sample + "--avoid hard.csv --avoid link.csv -o poses.csv", "--out is poses.csv, " + same + "--avoid" + other},
+        {sample + "--region poses.csv -o poses.csv", "--out is poses.csv, " + same + "--region" + other},
+        {sample + "--keep-out poses.csv -o poses.csv", "--out is poses.csv, " + same + "--keep-out" + other},
+        {sample + "--with scene.yaml -o scene.yaml", "--out is scene.yaml, " + same + "--with" + other},
+        {sample + "--with robot.yaml@1,1,0 -o robot.yaml", "--out is robot.yaml, " + same + "--with" + other},
+        {sample + "--world world.sdf --format sdf -o world.sdf", "--out is world.sdf, " + same + "--world" + other},
+        {sample + "--robot-file robot.yaml --format sdf -o robot.yaml",
+         "--out is robot.yaml, " + same + "--robot-file" + other},
+        {"sample map --robot robot.yaml -n 1 -o robot.yaml", "--out is robot.yaml, " + same + "--robot" + other},
+        {"sample map --fleet fleet.yaml -o fleet.yaml", "--out is fleet.yaml, " + same + "--fleet" + other},
+        {sample + "--pairs 1 -o out --path map/paths.csv", "--path is map/paths.csv" + inside},
+        {sample + "-o out --summary out",
+         "--out and --summary are the same file, out; choose another name for one of "
+         "them"},
+        {sample + "-o out --summary ./out",
+         "--out and --summary are the same file, ./out; choose another name for one "
+         "of them"},
+        {"raster map --dims 2 --step 1 -o out --heatmap out" + husky,
+         "--out and --heatmap are the same file, out; choose another name for one of them"},
+        {"raster map --dims 2 --step 1 --heatmap map/preview.png" + husky, "--heatmap is map/preview.png" + inside},
+        {"heatmap map --spawns poses.csv -o poses.csv" + husky, "--out is poses.csv, " + same + "--spawns" + other},
+        {"export map --format nav2 -o map/map.yaml" + husky, "--out is map/map.yaml" + inside},
+        {"export map --format nav2 -o new.yaml --summary new.pgm" + husky,
+         "--summary and the image of --out are the same file, new.pgm; choose another name for one of them"},
+        {"experiment map --dims 2 --steps 1 -o map" + husky, "--out is map, the same folder as the map" + other},
+        {"experiment map --dims 2 --steps 1 -o ." + husky,
+         "--out is ., a folder that contains map, which is read as the map; choose another name for the output"},
+        {"audit scene.yaml --rules rules.yaml -o rules.yaml" + husky,
+         "--out is rules.yaml, " + same + "--rules" + other},
+        {"audit scene.yaml -o scene.yaml" + husky, "--out is scene.yaml, " + same + "the scene" + other},
+        {"info robot.yaml --picture robot.yaml", "--picture is robot.yaml, " + same + "the input" + other},
+        {"bake scene.yaml -o scene.yaml", "--out is scene.yaml, " + same + "the scene" + other},
+        {"bake kept/occupancy.bt -o kept",
+         "--out is kept, a folder that contains kept/occupancy.bt, which is read as "
+         "the scene; choose another name for the output"},
+    };
+    for (const Refusal& refusal : refusals) desk.check({refusal.arguments, "spawnfield: " + refusal.message}, 2);
+    CHECK(bytes_of(desk / "poses.csv") == before_poses);
+    CHECK(bytes_of(desk / "map/map.yaml") == before_map);
+    CHECK(bytes_of(desk / "kept/occupancy.bt") == before_kept);
+}
+
+TEST_CASE("outputs that destroy nothing are not refused")
+{
+    const Desk desk;
+    desk.write("kept/scene.yaml", bytes_of(desk / "scene.yaml"));
+    fs::copy(desk / "map", desk / "kept", fs::copy_options::recursive);
+    const std::string scene = bytes_of(desk / "kept/scene.yaml");
+    for (const std::string& arguments :
+         {std::string("bake kept/scene.yaml -o kept --resolution 0.5"),
+          std::string("bake kept/scene.yaml -o kept --resolution 0.5 --update '*'"),
+          std::string("bake scene.yaml -o map --resolution 0.5 --update floor"),
+          std::string("bake scene.yaml -o map --resolution 0.5 --summary map/s.json"),
+          "check map --poses poses.csv -o /dev/null --summary /dev/null" + husky,
+          "check map --poses poses.csv -o map.csv" + husky, "check map --poses poses.csv -o mapped/../o.csv" + husky}) {
+        CAPTURE(arguments);
+        const bool has_no_folder = arguments.find("mapped") != std::string::npos;
+        CHECK(run_program(desk, arguments + " -q").status == (has_no_folder ? 1 : 0));
+    }
+    CHECK(bytes_of(desk / "kept/scene.yaml") == scene);
+    CHECK(bytes_of(desk / "map/s.json").starts_with("{"));
 }

@@ -52,11 +52,11 @@ SPAWNFIELD_API std::filesystem::path nav2_image_of(const std::filesystem::path& 
 ///
 /// A pixel is unknown (205) where there is no pose or the verdict is `outside`, free (254) where it is `valid`,
 /// occupied (0) where it is any other. A pixel is a cell; `origin` in the yaml is the lower left corner of the raster.
-/// Each line of `comment` becomes a comment line of the yaml. Both files appear, or none. Throws ArgumentError for a
-/// wrong ending of the name, and OutputError. Source: map_server's documentation of its map format
-/// (wiki.ros.org/map_server).
-SPAWNFIELD_API void write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml,
-                                   const std::vector<std::string>& comment = {});
+/// Each line of `comment` becomes a comment line of the yaml. Both files appear, or none. Returns notices for the user:
+/// old files that could not be removed. Throws ArgumentError for a wrong ending of the name, and OutputError. Source:
+/// map_server's documentation of its map format (wiki.ros.org/map_server).
+SPAWNFIELD_API std::vector<std::string> write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml,
+                                                       const std::vector<std::string>& comment = {});
 
 struct GeoTiffOptions {
     LayerChoice layers = {LayerChoice::Kind::Top, 0};  ///< the one layer whose free height and slope are written

@@ -4,14 +4,20 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
+#include <system_error>
+#include <vector>
 
 namespace spawnfield {
 
+class Descriptor;
+
 /// A folder that appears complete or not at all. It is filled beside its final name, and commit() puts it there.
-/// Without commit(), it is removed. If the name is a link to a folder, the target of the link is replaced. Only one
-/// thread at a time may use it.
+/// Without commit(), it is removed; if the process was killed, the next OutputFolder of this name removes it, and puts
+/// back an old folder that has lost its name. If the name is a link to a folder, the target of the link is replaced.
+/// Only one thread at a time may use it.
 class SPAWNFIELD_API OutputFolder {
 public:
     using Path = std::filesystem::path;
@@ -25,12 +31,22 @@ public:
 
     const Path& path() const { return folder_; }  ///< the folder to write to before commit()
 
-    /// If there was an old folder, `keep` may move files from it to the new one before it is removed. Throws
-    /// OutputError.
-    void commit(const std::function<void(const Path& old, const Path& now)>& keep = {});
+    /// Entries of the old folder for which `keeps` returns true are in the new one, too. At no time is one of them
+    /// lost. Throws OutputError.
+    void commit(const std::function<bool(const Path& name)>& keeps = {});
+
+    /// For the user, complete after commit(): what was put back, and what could not be removed.
+    const std::vector<std::string>& notices() const { return notices_; }
 
 private:
-    Path target_, folder_, old_;
+    std::error_code put_in_place();
+    void clear_old(const std::function<bool(const Path& name)>& keeps);
+
+    std::function<std::string(const Path&)> objection_;
+    Path target_, folder_;
+    std::vector<Path> old_;  ///< former folders, under their temporary names
+    std::vector<std::string> notices_;
+    std::unique_ptr<Descriptor> lock_, old_lock_;
 };
 
 /// Returns an objection to folders that contain anything except files of these names. So a command replaces only

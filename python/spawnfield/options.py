@@ -16,6 +16,7 @@ def options(command: str) -> str:
         ArgumentError: there is no such function.
     """
     known = _core.commands()
+    known.pop("clean", None)  # only a command of the program
     if command not in known:
         raise ArgumentError(f"there is no function {command}; there are {', '.join(known)}")
     groups: dict[str, list[str]] = {}

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from .errors import ArgumentError
+from .errors import ArgumentError, translated
 
 #: The name of each verdict by its code, as in files and in arrays of verdicts; see docs/verdicts.md.
 VERDICTS = {
@@ -90,13 +90,10 @@ class Table:
 def write_bytes(data: bytes, file: str | os.PathLike[str] | None) -> bytes:
     """Writes bytes to a file, completely or not at all, unless it is None. Returns them."""
     if file is not None:
-        path = Path(file)
-        part = path.with_name(f".{path.name}.{os.getpid()}.part")
         try:
-            part.write_bytes(data)
-            part.replace(path)
-        finally:
-            part.unlink(missing_ok=True)
+            _core.write_file(os.fspath(file), data)
+        except _core.OutputError as error:
+            raise translated(error) from None
     return data
 
 

@@ -1,6 +1,7 @@
 #include "interpreter.h"
 
 #include "command.h"
+#include "overwriting.h"
 #include "results.h"
 #include "spelling.h"
 #include "streams.h"
@@ -37,7 +38,10 @@ void parse(CLI::App& app, const std::vector<std::string>& words)
         const std::string unknown = cli::unknown_option(app);
         throw ArgumentError(unknown.empty() ? error.what() : unknown);
     }
-    for (const CLI::App* const command : app.get_subcommands()) cli::check_streams(*command);
+    for (const CLI::App* const command : app.get_subcommands()) {
+        cli::check_streams(*command);
+        cli::check_overwriting(*command);
+    }
 }
 
 /// Returns the result of a command as an object of Python; None if there is none.

@@ -3,6 +3,7 @@
 
 #include <spawnfield/error.h>
 #include <spawnfield/map.h>
+#include <spawnfield/output_file.h>
 #include <spawnfield/poses.h>
 #include <spawnfield/robot.h>
 #include <spawnfield/scene.h>
@@ -36,6 +37,14 @@ nb::dict run(const std::vector<std::string>& words, const nb::dict& inputs, bool
     return host.run(words, wants_text, on_message, on_progress);
 }
 
+/// Writes a file, completely or not at all.
+void write_file(const std::string& file, const nb::bytes& bytes)
+{
+    const std::string_view view(bytes.c_str(), bytes.size());
+    const nb::gil_scoped_release unlocked;
+    write_file_atomically(file, view);
+}
+
 }  // namespace
 }  // namespace spawnfield::python
 
@@ -53,4 +62,5 @@ NB_MODULE(_core, module)
     module.def("run", &python::run, nanobind::arg("words"), nanobind::arg("inputs"), nanobind::arg("wants_text"),
                nanobind::arg("on_message"), nanobind::arg("on_progress").none());
     module.def("version", &version);
+    module.def("write_file", &python::write_file, nanobind::arg("file"), nanobind::arg("bytes"));
 }

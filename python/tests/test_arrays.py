@@ -284,8 +284,32 @@ def test_picture_on_axis(world, robot):
 def test_options_text():
     text = sf.options("sample")
     assert "min_distance" in text and "\n  settle (True)\n" in text
+    with pytest.raises(sf.ArgumentError, match="there is no function clean; .*experiment$"):
+        sf.options("clean")
     with pytest.raises(sf.ArgumentError, match="there is no function smaple"):
         sf.options("smaple")
+
+
+def test_files_appear_complete_or_not_at_all(world, robot, tmp_path):
+    spawns = world.sample(robot, 3, seed=1)
+    target = tmp_path / "spawns.csv"
+    planted = tmp_path / f".spawns.csv.{os.getpid()}.part"
+    victim = tmp_path / "victim"
+    victim.write_text("precious")
+    planted.symlink_to(victim)
+    assert spawns.to_csv(target) == target.read_bytes()
+    assert victim.read_text() == "precious"
+    assert {file.name for file in tmp_path.iterdir()} == {target.name, planted.name, victim.name}
+    with pytest.raises(sf.FileError, match="none/spawns.csv: cannot be written: No such file"):
+        spawns.to_csv(tmp_path / "none" / "spawns.csv")
+
+
+def test_outputs_never_destroy_inputs(world, robot, tmp_path):
+    poses = tmp_path / "poses.csv"
+    before = world.sample(robot, 3, seed=1).to_csv(poses)
+    with pytest.raises(sf.ArgumentError, match="--out is .*poses.csv, the same file as --avoid, which is read"):
+        world.sample(robot, 3, avoid=poses, out=poses)
+    assert poses.read_bytes() == before
 
 
 def test_csv_of_poses_in_memory(world, robot, tmp_path):

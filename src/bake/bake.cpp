@@ -39,21 +39,14 @@ std::string objection_to(const fs::path& folder)
     return is_map ? "" : "exists and is not a map";
 }
 
-/// Moves files that do not belong to the map, which users put into its folder, from the old folder to the new one.
-/// Drivable graphs of maps with another hash than the new one are left out.
-void keep_foreign_files(const fs::path& old, const fs::path& now, const std::string& hash)
+/// Returns whether a file of an old map's folder goes to the new one: files that do not belong to the map, which users
+/// put there. Drivable graphs of maps with another hash than the new one are left out.
+bool is_kept(const fs::path& name, const std::string& hash)
 {
-    const std::regex graph_file("reach-([0-9a-f]{16})-[0-9a-f]{16}\\.bin");  // as kept_graph_file() names it
-    const std::vector<fs::directory_entry> entries(fs::directory_iterator(old),
-                                                   {});  // listed first, because the loop moves some
-    for (const fs::directory_entry& entry : entries) {
-        const fs::path name = entry.path().filename();
-        if (name == "map.yaml" || std::find(map_files.begin(), map_files.end(), name) != map_files.end()) continue;
-        if (std::smatch found; std::regex_match(name.native(), found, graph_file) && found[1] != hash) continue;
-        std::error_code error;
-        fs::rename(entry.path(), now / name, error);
-        if (error) throw OutputError(entry.path().string(), "cannot be moved into the new map: " + error.message());
-    }
+    static const std::regex graph_file("reach-([0-9a-f]{16})-[0-9a-f]{16}\\.bin");  // as kept_graph_file() names it
+    if (name == "map.yaml" || std::find(map_files.begin(), map_files.end(), name) != map_files.end()) return false;
+    std::smatch found;
+    return !std::regex_match(name.native(), found, graph_file) || found[1] == hash;
 }
 
 double default_resolution(const Bounds& bounds, BakeReport& report)
@@ -277,7 +270,8 @@ BakeReport bake_scene(Scene scene, const fs::path& scene_file, const fs::path& f
     report.hash = write_map_yaml(target.path(), map, terrain, files.heightmap_z, {files.bounds, files.geometry});
     if (options.progress) options.progress(1);
     for (const auto& entry : fs::directory_iterator(target.path())) report.bytes += entry.file_size();
-    target.commit([&](const fs::path& old, const fs::path& now) { keep_foreign_files(old, now, report.hash); });
+    target.commit([&](const fs::path& name) { return is_kept(name, report.hash); });
+    report.notices.insert(report.notices.end(), target.notices().begin(), target.notices().end());
     report.layers = map.layers;
     lap("write");
     return report;

@@ -51,15 +51,15 @@ std::filesystem::path nav2_image_of(const std::filesystem::path& yaml)
     return std::filesystem::path(yaml).replace_extension(".pgm");
 }
 
-void write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml,
-                    const std::vector<std::string>& comment)
+std::vector<std::string> write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml,
+                                        const std::vector<std::string>& comment)
 {
     const std::filesystem::path pgm = nav2_image_of(yaml);
     OutputFile pixels(pgm), text(yaml);
     pixels.write(pgm_bytes(image));
     text.write(yaml_text(image.frame, pgm.filename().string(), comment));
     OutputFile* const both[] = {&pixels, &text};
-    OutputFile::commit_together(both);
+    return OutputFile::commit_together(both);
 }
 
 }  // namespace spawnfield

@@ -12,6 +12,19 @@
 namespace spawnfield {
 namespace {
 
+/// These are false for a path that cannot exist, for example a URI that is too long for a name.
+bool does_exist(const fs::path& path)
+{
+    std::error_code impossible;
+    return fs::exists(path, impossible);
+}
+
+bool is_file(const fs::path& path)
+{
+    std::error_code impossible;
+    return fs::is_regular_file(path, impossible);
+}
+
 namespace fs = std::filesystem;
 
 std::string without(const std::string& prefix, const std::string& text) { return text.substr(prefix.size()); }
@@ -31,9 +44,9 @@ void add_variable(const char* variable, std::vector<fs::path>& folders)
 /// model's folder: then its own name is the first part of `inside`.
 fs::path found_in(const fs::path& folder, const fs::path& inside)
 {
-    if (fs::exists(folder / inside)) return folder / inside;
+    if (does_exist(folder / inside)) return folder / inside;
     const bool is_own = !inside.empty() && folder.filename() == *inside.begin();
-    return is_own && fs::exists(folder.parent_path() / inside) ? folder.parent_path() / inside : fs::path();
+    return is_own && does_exist(folder.parent_path() / inside) ? folder.parent_path() / inside : fs::path();
 }
 
 /// Returns the folder of a Fuel model that Gazebo has downloaded; empty if there is none. Gazebo stores it in
@@ -66,14 +79,14 @@ fs::path found_in_fuel_cache(const std::string& uri)
 fs::path sdf_file_of(const fs::path& folder)
 {
     const fs::path config = folder / "model.config";
-    if (fs::is_regular_file(config)) {
+    if (is_file(config)) {
         const auto document = read_xml(config, "a <model> element");
         std::string name;
         double highest = -1;
         for_each_child(*document->RootElement(), "sdf", [&](const Xml& sdf) {
             const double version = sdf.DoubleAttribute("version", 0);
             // model.config often names files for old simulators that do not exist.
-            if (sdf.GetText() == nullptr || version <= highest || !fs::is_regular_file(folder / sdf.GetText())) return;
+            if (sdf.GetText() == nullptr || version <= highest || !is_file(folder / sdf.GetText())) return;
             highest = version;
             name = sdf.GetText();
         });
@@ -83,7 +96,7 @@ fs::path sdf_file_of(const fs::path& folder)
     for (const fs::directory_entry& entry : fs::directory_iterator(folder))
         if (entry.path().extension() == ".sdf") files.push_back(entry.path());
     if (files.size() == 1) return files[0];
-    if (fs::is_regular_file(folder / "model.sdf")) return folder / "model.sdf";
+    if (is_file(folder / "model.sdf")) return folder / "model.sdf";
     throw FileError(
         folder.string(),
         files.empty()
@@ -125,8 +138,8 @@ ModelPaths::Path ModelPaths::find_on_disk(const std::string& uri, const Path& fo
             is_named = std::string(scheme) != "file://";
         }
     if (inside.empty()) return {};
-    if (inside.is_absolute()) return fs::exists(inside) ? inside : Path();
-    if (!is_named && fs::exists(folder / inside)) return folder / inside;
+    if (inside.is_absolute()) return does_exist(inside) ? inside : Path();
+    if (!is_named && does_exist(folder / inside)) return folder / inside;
     for (const Path& named : named_)
         if (const Path found = found_in(named, inside); !found.empty()) return found;
     for (const Path& above : above_)

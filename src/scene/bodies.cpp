@@ -120,7 +120,7 @@ private:
                 ignore(body, "<" + geometry.element + "> is not a known geometry");
             if (geometry.kind != Kind::Mesh && geometry.kind != Kind::Heightmap) continue;
             const fs::path found = paths_.find(geometry.uri, geometry.folder);
-            if (fs::is_regular_file(found)) {
+            if (std::error_code impossible; fs::is_regular_file(found, impossible)) {
                 files_[&body] = found;
                 if (geometry.kind == Kind::Mesh) meshes_.expect(found);
                 continue;

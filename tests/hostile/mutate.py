@@ -56,7 +56,17 @@ def extreme_number(data, rng):
     return data[: found.start()] + rng.choice(EXTREMES) + data[found.end() :]
 
 
+def line_of_text(data, rng):
+    """Repeats, removes or moves a line, so that the file may still be read."""
+    lines = data.splitlines(keepends=True)
+    at, other = rng.randrange(len(lines)), rng.randrange(len(lines))
+    kind = rng.randrange(3)
+    lines[at] = (lines[at] * rng.choice((2, 100)), b"", lines[other])[kind]
+    return b"".join(lines)
+
+
 KINDS = (cut, flip, flip, repeat, remove, exchange, extreme_number, extreme_number)
+TEXT_KINDS = (*KINDS, *[extreme_number] * 8, *[line_of_text] * 6)
 
 
 def sources(names, most_bytes):
@@ -83,7 +93,7 @@ def main():
         file = files[number % len(files)]
         data = file.read_bytes()
         for _ in range(rng.choice((1, 1, 1, 2, 4))):
-            data = rng.choice(KINDS)(data, rng) or b"\0"
+            data = rng.choice(KINDS if b"\0" in data[:4096] else TEXT_KINDS)(data, rng) or b"\0"
         (args.out / f"{number:05}_{file.stem[:20]}{file.suffix}").write_bytes(data)
     print(f"{args.count} files from {len(files)} originals")
 

@@ -42,6 +42,7 @@ void add_commands(CLI::App& app, const std::string& command_line, ChosenCommand&
         {"export", [&] { add_export(app, chosen); }},
         {"audit", [&] { add_audit(app, chosen); }},
         {"experiment", [&] { add_experiment(app, command_line, chosen); }},
+        {"clean", [&] { add_clean(app, chosen); }},
     };
     const auto is_it = [&](const auto& command) { return command.first == name; };
     const bool is_known = std::any_of(commands.begin(), commands.end(), is_it);

@@ -187,6 +187,7 @@ private:
         write_file_atomically(folder.path() / "experiment.md", experiment_markdown(experiment));
         stop_if_interrupted(args_);
         folder.commit();
+        notices(args_, folder.notices());
     }
 
     Ending finish()

@@ -112,7 +112,7 @@ void write_nav2(const ExportJob& job)
     const RasterOptions options = image_options(job);
     const VerdictImage image = ask(job, options, image_frame(job));
     clear_progress_bar(job.args);
-    write_nav2_map(image, job.args.out, comment_of(job, options, "top"));
+    notices(job.args, write_nav2_map(image, job.args.out, comment_of(job, options, "top")));
 }
 
 /// Returns the layer of an image without a robot.

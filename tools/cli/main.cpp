@@ -1,4 +1,5 @@
 #include "command.h"
+#include "overwriting.h"
 #include "spelling.h"
 #include "streams.h"
 #include "terminal.h"
@@ -25,7 +26,10 @@ int run_guarded(const CLI::App& app, const ChosenCommand& chosen)
         return status;
     };
     try {
-        for (const CLI::App* const command : app.get_subcommands()) check_streams(*command);
+        for (const CLI::App* const command : app.get_subcommands()) {
+            check_streams(*command);
+            check_overwriting(*command);
+        }
         return run_command(chosen);
     } catch (const Interrupted&) {
         return failed(interrupted, "interrupted; nothing was written");

@@ -369,6 +369,7 @@ void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const 
     write_file_atomically(into / "isaaclab.json", about.dump(2) + "\n");
     stop_if_interrupted(common_);
     folder_->commit();
+    notices(common_, folder_->notices());
 }
 
 void notice_not_valid(const CommonArgs& common, const PoseTable& table, const std::string& file)

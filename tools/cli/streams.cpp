@@ -13,9 +13,6 @@ namespace {
 /// Options whose value is read from standard input if it is `-`.
 constexpr std::array inputs{"--poses", "--spawns", "--pairs", "--paths", "--avoid", "--region", "--keep-out"};
 
-/// Options whose value goes to standard output if it is `-`.
-constexpr std::array outputs{"--out", "--repaired", "--path", "--summary", "--heatmap", "--picture"};
-
 /// An option that cannot be read from standard input, and its meaning.
 struct Unable {
     const char* option;
@@ -48,7 +45,7 @@ bool was_given(const CLI::App& command, const std::string& name)
 /// Returns whether the result goes to standard output by default.
 bool prints_by_default(const CLI::App& command)
 {
-    if (command.get_name() == "info") return true;
+    if (command.get_name() == "info" || command.get_name() == "clean") return true;
     const bool is_picture_alone = command.get_name() == "raster" && was_given(command, "--heatmap");
     return command.get_option_no_throw("--out") != nullptr && !was_given(command, "--out") && !is_picture_alone;
 }
@@ -82,7 +79,7 @@ void check_streams(const CLI::App& command)
         throw ArgumentError(in[0] + " and " + in[1] +
                             " are both \"-\", but standard input can be read only once; give one of them a file");
     if (prints_by_default(command)) out.push_back("the result");
-    for (const char* const option : outputs) out.insert(out.end(), standard_uses(command, option), option);
+    for (const char* const option : output_options) out.insert(out.end(), standard_uses(command, option), option);
     if (out.size() > 1)
         throw ArgumentError(out[0] + " and " + out[1] + " would both go to standard output; give one of them a file");
 }

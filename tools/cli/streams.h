@@ -2,9 +2,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include <array>
 #include <string>
 
 namespace spawnfield::cli {
+
+/// All options whose value is the path of a file or a folder to write. If it is `-`, the file goes to standard output.
+inline constexpr std::array output_options{"--out", "--repaired", "--path", "--summary", "--heatmap", "--picture"};
 
 /// Returns whether an option's value means standard input or output.
 inline bool is_standard(const std::string& file) { return file == "-"; }

@@ -50,6 +50,7 @@ void write_thesis(const CommonArgs& args, OutputFolder& folder, const Settings& 
     then();
     stop_if_interrupted(args);
     folder.commit();
+    notices(args, folder.notices());
 }
 
 }  // namespace spawnfield::cli
