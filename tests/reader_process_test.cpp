@@ -235,3 +235,46 @@ TEST_CASE("a scene or robot with wrong indices is refused, and bytes that are cu
         read(harmed);
     }
 }
+
+TEST_CASE("files outside of the folders of --confine are refused, also by links; others are listed")
+{
+    const TempFolder folder;
+    const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    folder.write("in/scene.yaml", "format: spawnfield-scene/1\nparts: [{name: a, label: terrain, mesh: a.obj}]\n");
+    folder.write("in/a.obj", mesh);
+    folder.write("in/up.yaml", "format: spawnfield-scene/1\nparts: [{name: a, label: terrain, mesh: ../b.obj}]\n");
+    folder.write("in/link.yaml", "format: spawnfield-scene/1\nparts: [{name: a, label: terrain, mesh: link.obj}]\n");
+    folder.write("b.obj", mesh);
+    fs::create_symlink("../b.obj", folder / "in/link.obj");
+    folder.write("in2/model.config",
+                 "<?xml version='1.0'?><model><name>m</name><sdf version='1.6'>m.sdf</sdf></model>");
+    folder.write("in2/m.sdf",
+                 "<?xml version='1.0'?><sdf version='1.6'><model name='m'><link name='l'><collision name='c'>"
+                 "<geometry><box><size>1 1 1</size></box></geometry></collision></link></model></sdf>");
+    folder.write("in/w.world",
+                 "<?xml version='1.0'?><sdf version='1.6'><world name='w'><include><uri>model://in2</uri>"
+                 "</include></world></sdf>");
+    folder.write("in/robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: ../b.obj}]\n");
+    const std::string words = ", outside of the folders of --confine; move it there, or add its folder";
+    const fs::path real = fs::canonical(folder.path());
+
+    CHECK(run_program(folder, "info in/scene.yaml --confine in").status == 0);
+    for (const std::string scene : {"up", "link"}) {
+        const ProgramRun run = run_program(folder, "info in/" + scene + ".yaml --confine in");
+        CAPTURE(run.err);
+        CHECK(run.status == 4);
+        CHECK_THAT(run.err, Contains((real / "b.obj").string() + words));
+        CHECK(run_program(folder, "info in/" + scene + ".yaml --confine in --confine .").status == 0);
+    }
+    CHECK(run_program(folder, "info in/w.world --confine in").status == 4);
+    CHECK(run_program(folder, "info in/w.world --confine in --confine in2").status == 0);
+    CHECK(run_program(folder, "info in/robot.yaml --confine in").status == 4);
+    CHECK(run_program(folder, "info in/up.yaml --confine in --trusted").status == 2);
+
+    CHECK_THAT(run_program(folder, "info in/up.yaml").out,
+               Contains("files from outside of its folder: 1\n  " + (real / "b.obj").string() + "\n"));
+    CHECK_THAT(run_program(folder, "info in/scene.yaml").out, !Contains("outside"));
+    const ProgramRun bake = run_program(folder, "bake in/up.yaml -o map --summary s.json");
+    CHECK_THAT(bake.err, Contains("1 file from outside of the scene's folder; "));
+    CHECK_THAT(bytes_of(folder / "s.json"), Contains("\"outside_files\": [\n    \"" + (real / "b.obj").string()));
+}

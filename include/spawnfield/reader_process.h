@@ -4,8 +4,10 @@
 #include <spawnfield/robot.h>
 #include <spawnfield/scene.h>
 
+#include <filesystem>
 #include <functional>
 #include <optional>
+#include <vector>
 
 namespace spawnfield {
 
@@ -21,6 +23,11 @@ struct ReaderProcess {
     std::filesystem::path program;
     /// Called ten times per second while the process reads. May throw; this ends the process.
     std::function<void()> wait = {};
+    /// Only files in these folders may be read, at any depth, after links are resolved; empty: all files.
+    std::vector<std::filesystem::path> confine = {};
+    /// Gets the paths of all files that were read, without links, each once. Not called after an error, and for a robot
+    /// that is read in the calling process.
+    std::function<void(const std::vector<std::filesystem::path>&)> report = {};
 };
 
 /// Reads a scene as load_scene() does, in a process of its own. The process gets the environment of this one. Throws

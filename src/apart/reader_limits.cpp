@@ -1,5 +1,7 @@
 #include "apart/reader_limits.h"
 
+#include <spawnfield/error.h>
+
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -42,6 +44,18 @@ void copy(const std::string& text, char (&to)[size])
     to[count] = 0;
 }
 
+std::filesystem::path without_links(const std::filesystem::path& path)
+{
+    std::error_code unreachable;
+    const std::filesystem::path found = std::filesystem::canonical(path, unreachable);
+    return unreachable ? path : found;
+}
+
+bool is_inside(const std::filesystem::path& path, const std::filesystem::path& folder)
+{
+    return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
 }  // namespace
 
 ReaderLimits::ReaderLimits(ReaderStatus& status) : status_(status), at_start_(data_memory())
@@ -51,9 +65,20 @@ ReaderLimits::ReaderLimits(ReaderStatus& status) : status_(status), at_start_(da
     set();
 }
 
+void ReaderLimits::confine(const std::vector<std::filesystem::path>& folders)
+{
+    confined_.emplace();
+    for (const std::filesystem::path& folder : folders) confined_->push_back(without_links(folder));
+}
+
 void ReaderLimits::opens(const std::filesystem::path& file, std::uint64_t bytes)
 {
-    if (!files_.insert(file).second) return;
+    const std::filesystem::path path = without_links(file);
+    if (confined_ && std::none_of(confined_->begin(), confined_->end(),
+                                  [&](const std::filesystem::path& folder) { return is_inside(path, folder); }))
+        throw FileError(file.string(), "is " + (path == file ? "" : path.string() + ", ") +
+                                           "outside of the folders of --confine; move it there, or add its folder");
+    if (!files_.insert(path).second) return;
     bytes_ += bytes;
     set();
 }

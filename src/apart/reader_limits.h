@@ -2,7 +2,9 @@
 
 #include "base/input_watch.h"
 
+#include <optional>
 #include <set>
+#include <vector>
 
 namespace spawnfield {
 
@@ -38,6 +40,11 @@ public:
     /// Sets the limits that hold while small files are read. `status` must live as long as this.
     explicit ReaderLimits(ReaderStatus& status);
 
+    /// From now on opens() refuses files outside of these folders, after links are resolved: it throws FileError.
+    void confine(const std::vector<std::filesystem::path>& folders);
+    /// Returns all files that were opened, without links.
+    const std::set<std::filesystem::path>& files() const { return files_; }
+
     void opens(const std::filesystem::path& file, std::uint64_t bytes) override;
     void begins(const char* reader, const std::filesystem::path& file) override;
     void ends() override;
@@ -46,9 +53,10 @@ private:
     void set();
 
     ReaderStatus& status_;
-    std::set<std::filesystem::path> files_;
-    std::uint64_t bytes_ = 0;       ///< of all files
-    const std::uint64_t at_start_;  ///< memory of this process when it began, bytes
+    std::set<std::filesystem::path> files_;                       ///< without links
+    std::optional<std::vector<std::filesystem::path>> confined_;  ///< folders without links
+    std::uint64_t bytes_ = 0;                                     ///< of all files
+    const std::uint64_t at_start_;                                ///< memory of this process when it began, bytes
 };
 
 }  // namespace spawnfield

@@ -161,7 +161,8 @@ Result asked(RequestKind kind, std::string name, Options options, const ReaderPr
 {
     MemoryFile request("spawnfield-request"), answer("spawnfield-answer");
     ArchiveWriter out;
-    out(kind, name, options);
+    std::vector<fs::path> confine = process.confine;
+    out(kind, name, confine, options);
     request.write(0, out.take());
     answer.write(0, std::string(sizeof(ReaderStatus), '\0'));
     bool stalled = false;
@@ -178,9 +179,11 @@ Result asked(RequestKind kind, std::string name, Options options, const ReaderPr
         in(answered);
         if (answered != AnswerKind::Result) rethrow(answered, in, last, name);
         Result result;
-        in(result);
+        std::vector<fs::path> files;
+        in(result, files);
         const std::string fault = fault_of(result);
         if (!fault.empty()) throw FileError(name, "the reader gave a wrong result (" + fault + ")" + damaged);
+        if (process.report) process.report(files);
         return result;
     } catch (const std::out_of_range&) {
         throw FileError(name, "the reader gave an answer that is cut short" + damaged);
@@ -208,7 +211,7 @@ Scene load_scene_apart(const fs::path& file, const SceneOptions& options, const 
 
 Robot load_robot_apart(const std::string& robot, const RobotOptions& options, const ReaderProcess& process)
 {
-    if (!may_need_foreign_reader(robot)) return load_robot(robot, options);
+    if (process.confine.empty() && !may_need_foreign_reader(robot)) return load_robot(robot, options);
     return asked<Robot>(RequestKind::Robot, robot, options, process);
 }
 

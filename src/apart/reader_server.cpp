@@ -2,6 +2,7 @@
 #include "apart/reader_limits.h"
 #include "apart/reader_protocol.h"
 #include "apart/scene_fields.h"
+#include "model/built_in_models.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/reader_process.h>
@@ -24,13 +25,18 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns the answer to a request, without its AnswerKind.
-std::string answer_to(std::string_view request)
+std::string answer_to(std::string_view request, ReaderLimits& limits)
 {
     ArchiveReader in(request);
     ArchiveWriter out;
     RequestKind kind{};
     std::string name;
-    in(kind, name);
+    std::vector<fs::path> confine;
+    in(kind, name, confine);
+    if (!confine.empty()) {
+        confine.push_back(built_in_folder());
+        limits.confine(confine);
+    }
     if (kind == RequestKind::Scene) {
         SceneOptions options;
         in(options);
@@ -42,6 +48,8 @@ std::string answer_to(std::string_view request)
         Robot robot = load_robot(name, options);
         out(robot);
     }
+    std::vector<fs::path> files(limits.files().begin(), limits.files().end());
+    out(files);
     return out.take();
 }
 
@@ -63,10 +71,10 @@ std::string texts(std::initializer_list<std::string> texts)
 bool is_about_memory(const std::string& text) { return text.find("bad_alloc") != std::string::npos; }
 
 /// Returns the whole answer, also if reading fails.
-std::string served(std::string_view request, const ReaderStatus& status)
+std::string served(std::string_view request, const ReaderStatus& status, ReaderLimits& limits)
 {
     try {
-        return answer(AnswerKind::Result, answer_to(request));
+        return answer(AnswerKind::Result, answer_to(request, limits));
     } catch (const FileError& error) {
         if (is_about_memory(error.what())) return answer(AnswerKind::OutOfMemory, "");
         return answer(AnswerKind::FileError, texts({error.what()}));
@@ -109,7 +117,7 @@ std::optional<int> serve_reader(int argc, char** argv)
         auto& status = *reinterpret_cast<ReaderStatus*>(shared.data());
         ReaderLimits limits(status);
         set_input_watch(limits);
-        const std::string bytes = served(asked.view(), status);
+        const std::string bytes = served(asked.view(), status, limits);
         out.write(sizeof(ReaderStatus), bytes);
         status.answer_bytes = bytes.size();
         _exit(0);

@@ -59,9 +59,11 @@ std::string built_in_model(const std::string& uri)
     return name == "groundplane" ? "ground_plane" : name == "sun" ? "sun" : "";
 }
 
+fs::path built_in_folder() { return library_folder() / "spawnfield-models"; }
+
 fs::path built_in_file(const std::string& model)
 {
-    const fs::path file = library_folder() / "spawnfield-models" / (model + ".sdf");
+    const fs::path file = built_in_folder() / (model + ".sdf");
     if (!fs::is_regular_file(file)) throw std::runtime_error(file.string() + " is missing; install spawnfield again");
     return file;
 }

@@ -12,7 +12,10 @@ namespace spawnfield {
 /// Fuel, only models of the owner OpenRobotics count.
 std::string built_in_model(const std::string& uri);
 
-/// Returns the SDF file of a built-in model. These files are installed beside the library.
+/// Returns the folder of the built-in models. It is installed beside the library.
+std::filesystem::path built_in_folder();
+
+/// Returns the SDF file of a built-in model.
 /// Throws std::runtime_error if the installation lacks it.
 std::filesystem::path built_in_file(const std::string& model);
 

@@ -1,5 +1,6 @@
 #include "model/model_paths.h"
 
+#include "base/input_watch.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "base/xml.h"
@@ -23,6 +24,15 @@ bool is_file(const fs::path& path)
 {
     std::error_code impossible;
     return fs::is_regular_file(path, impossible);
+}
+
+/// Counts a file, or the files of a model's folder, as opened: libsdformat opens them itself.
+void count_files(const fs::path& found)
+{
+    if (is_file(found)) return count_input(found);
+    std::error_code impossible;
+    for (const fs::directory_entry& entry : fs::directory_iterator(found, impossible))
+        if (is_file(entry.path())) count_input(entry.path());
 }
 
 namespace fs = std::filesystem;
@@ -121,6 +131,7 @@ ModelPaths::ModelPaths(const std::vector<Path>& given, const Path& file) : named
 ModelPaths::Path ModelPaths::find(const std::string& uri, const Path& folder)
 {
     const Path found = find_on_disk(uri, folder);
+    count_files(found);
     const std::string model = found.empty() ? built_in_model(uri) : "";
     if (model.empty()) return found;
     built_in_.insert(uri);

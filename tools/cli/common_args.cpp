@@ -23,6 +23,12 @@ void add_trusted(CLI::App& command, CommonArgs& args)
         "--trusted", args.trusted,
         "Read the files of scenes and robots in this process. By default, a process of its own reads them, "
         "with limits of memory and time, because damaged or hostile files can crash the libraries for them");
+    command
+        .add_option("--confine", args.confine,
+                    "Refuse scenes and robots that name files outside of this folder, also by links (repeatable; the "
+                    "scene and the robot must lie in one of the folders, too)")
+        ->allow_extra_args(false)
+        ->check(CLI::ExistingDirectory);
 }
 
 void add_allow_empty(CLI::App& command, CommonArgs& args)

@@ -18,8 +18,9 @@ struct CommonArgs {
     int threads = 0;
     bool quiet = false;
     std::string summary;
-    bool trusted = false;      ///< read scenes and robots in this process; set by --trusted
-    bool allow_empty = false;  ///< files of poses may contain no pose; set by --allow-empty
+    bool trusted = false;              ///< read scenes and robots in this process; set by --trusted
+    std::vector<std::string> confine;  ///< folders to which --confine restricts files; empty: none
+    bool allow_empty = false;          ///< files of poses may contain no pose; set by --allow-empty
 };
 
 /// Headings of --help, below a command's most common options.
@@ -36,7 +37,7 @@ void start_group(CLI::App& command, const std::string& name);
 /// Adds --threads, --quiet and --summary.
 void add_common(CLI::App& command, CommonArgs& args);
 
-/// Adds --trusted, for commands that read scenes or robots.
+/// Adds --trusted and --confine, for commands that read scenes or robots.
 void add_trusted(CLI::App& command, CommonArgs& args);
 
 /// Adds --allow-empty, for commands that read poses.

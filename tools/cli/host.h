@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -42,6 +43,8 @@ public:
 
     /// Reads scenes and robots for commands without --trusted. Nothing: they are read in this process.
     std::optional<ReaderProcess> reader;
+    /// Files that it read for a scene or a robot from outside of the folder of that scene or robot, without links.
+    std::set<std::string> outside_files;
 
     /// Things in memory that the caller gave in place of files. Their names stand where those of files would. A value
     /// is a std::shared_ptr<const T>, where T is Map, Robot, Scene or PoseTable.

@@ -394,6 +394,17 @@ std::string scene_lines(const Json& scene, std::span<const Part> all_parts)
     return out + more_line(all_parts.size()) + name_lines(parts, is_map ? "rules of place such as --on" : "--label");
 }
 
+/// Returns a heading and the first files that were read from outside of the folder of a scene or a robot.
+std::string outside_lines(const Json& what, bool is_text)
+{
+    if (!is_text || !what.contains("outside_files")) return "";
+    const Json& files = what["outside_files"];
+    std::string out = "files from outside of its folder: " + std::to_string(files.size()) + "\n";
+    for (std::size_t i = 0; i < std::min(most_lines, files.size()); ++i)
+        out += "  " + files[i].get<std::string>() + "\n";
+    return out + more_line(files.size());
+}
+
 /// Returns a heading, then a line for each floor, the highest first.
 std::string floor_lines(const Json& map)
 {
@@ -591,6 +602,7 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
         out = scene_json(scene);
         parts = std::move(scene.parts);
     }
+    if (out["kind"] != "map" && !args.host->outside_files.empty()) out["outside_files"] = args.host->outside_files;
     listen(1);
     summary.lap("load");
     const std::string kind = out["kind"];
@@ -600,7 +612,7 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
                                  ? robot_lines(out)
                                  : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) +
                                        origin_line(out) + scene_lines(out, parts);
-    write_output(args, "", [&](const auto& sink) { sink(text); });
+    write_output(args, "", [&](const auto& sink) { sink(text + outside_lines(out, !args.json)); });
     summary.extra.insert(summary.extra.begin(), args.what);
     return {};
 }

@@ -7,9 +7,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 namespace spawnfield::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Prints a notice if the robot is larger than the map: most likely one of them is in wrong units.
 void notice_if_larger_than_map(const CommonArgs& args, const Robot& robot, const Map& map)
@@ -35,6 +38,28 @@ void notice_if_old(const CommonArgs& args, const Map& map)
                          std::to_string(map_format_version));
 }
 
+/// Returns the process that reads this scene or robot; nothing if it is read in this process. The process adds files
+/// outside of its folder to the host's list. Throws ArgumentError for --confine without such a process.
+std::optional<ReaderProcess> reader_for(const CommonArgs& args, const std::string& file)
+{
+    std::optional<ReaderProcess> reader = args.trusted ? std::nullopt : args.host->reader;
+    if (!args.confine.empty() && !reader)
+        throw ArgumentError(
+            "--confine needs the process that reads files apart from the program; leave out --trusted, "
+            "and use the program in place of the library");
+    if (!reader) return reader;
+    reader->confine.assign(args.confine.begin(), args.confine.end());
+    reader->report = [host = args.host, file](const std::vector<fs::path>& files) {
+        std::error_code unreachable;
+        fs::path folder = fs::weakly_canonical(file, unreachable);
+        if (!fs::is_directory(folder, unreachable)) folder = folder.parent_path();
+        for (const fs::path& read : files)
+            if (std::mismatch(folder.begin(), folder.end(), read.begin(), read.end()).first != folder.end())
+                host->outside_files.insert(read.string());
+    };
+    return reader;
+}
+
 }  // namespace
 
 Session open_session(const QueryArgs& args, Summary& summary)
@@ -58,14 +83,14 @@ Session open_session(const QueryArgs& args, Summary& summary)
 
 Robot read_robot(const CommonArgs& args, const std::string& file, const RobotOptions& options)
 {
-    const bool is_apart = args.host->reader && !args.trusted;
-    return is_apart ? load_robot_apart(file, options, *args.host->reader) : load_robot(file, options);
+    const std::optional<ReaderProcess> reader = reader_for(args, file);
+    return reader ? load_robot_apart(file, options, *reader) : load_robot(file, options);
 }
 
 Scene read_scene(const CommonArgs& args, const std::string& file, const SceneOptions& options)
 {
-    const bool is_apart = args.host->reader && !args.trusted;
-    return is_apart ? load_scene_apart(file, options, *args.host->reader) : load_scene(file, options);
+    const std::optional<ReaderProcess> reader = reader_for(args, file);
+    return reader ? load_scene_apart(file, options, *reader) : load_scene(file, options);
 }
 
 Robot open_robot(const CommonArgs& args, const std::string& file, const RobotOptions& options)

@@ -22,9 +22,10 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 
 std::uint64_t peak_memory_bytes()
 {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return std::uint64_t(usage.ru_maxrss) * 1024;  // Linux counts KiB
+    rusage own{}, readers{};  // the largest process that read files for this one
+    getrusage(RUSAGE_SELF, &own);
+    getrusage(RUSAGE_CHILDREN, &readers);
+    return std::uint64_t(std::max(own.ru_maxrss, readers.ru_maxrss)) * 1024;  // Linux counts KiB
 }
 
 }  // namespace
@@ -78,6 +79,8 @@ std::string Summary::line(double total) const
         text += verdicts + "; " + (cells ? counted(*cells, "cell") + "; " : "") +
                 counted(exact_checks_, "exact check") + "; ";
     }
+    if (const std::size_t outside = args_.host->outside_files.size(); command_ == "bake" && outside > 0)
+        text += counted(outside, "file") + " from outside of the scene's folder; ";
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%.3f s", total);
     return text + seconds;
@@ -116,6 +119,7 @@ std::string Summary::json(double total) const
     out["seed"] = seed;
     out["map_hash"] = map_hash;
     if (!changes.empty()) out["changes"] = changes;
+    if (!args_.host->outside_files.empty()) out["outside_files"] = args_.host->outside_files;
     out["version"] = version();
     return out.dump(2) + "\n";
 }
