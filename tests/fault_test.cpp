@@ -229,7 +229,7 @@ TEST_CASE("meshes that are empty, not finite or not meshes are refused by name")
     CHECK(mesh_complaint("a.obj", "").starts_with(start));
     CHECK(mesh_complaint("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n").starts_with("@/a.obj: "));
     CHECK(mesh_complaint("a.stl", "solid a\nendsolid a\n").starts_with("@/a.stl: "));
-    CHECK(mesh_complaint("a.xyz", "hello").starts_with("@/a.xyz: cannot be read as a mesh: "));
+    CHECK(mesh_complaint("a.xyz", "hello").starts_with("@/a.xyz: has the extension \".xyz\", needs one of 3ds, "));
     CHECK(mesh_complaint("a.dae", "<COLLADA").starts_with("@/a.dae: cannot be read as a mesh: "));
     CHECK(mesh_complaint("a.obj", "v 0 0 0\nv 1 0 0\nv 1 0 0\nf 1 2 3\n") ==
           "@/a.obj: has no triangles, needs at least one");

@@ -209,7 +209,7 @@ TEST_CASE("a damaged PLY file is refused by line, value and limit")
           "element face, row 1 of 1: the file ends within it; is it cut short?");
     CHECK(complaint(folder, "a.ply", binary + "abc") ==
           "has 3 bytes after the last row that the header declares; are the counts of its elements right?");
-    CHECK(complaint(folder, "noname", replaced(ply_square, "2 3\n", "2 9\n")) ==
+    CHECK(complaint(folder, "a.stl", replaced(ply_square, "2 3\n", "2 9\n")) ==
           "line 16: a face has the corner 9, needs one of the 4 vertices, 0 .. 3");
 }
 

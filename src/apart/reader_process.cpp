@@ -20,6 +20,7 @@
 #include <cstring>
 #include <ctime>
 #include <system_error>
+#include <thread>
 
 namespace spawnfield {
 
@@ -87,7 +88,10 @@ private:
     bool has_ended(std::chrono::milliseconds most) const
     {
         pollfd event{descriptor_, POLLIN, 0};
-        return poll(&event, 1, int(most.count())) > 0;
+        if (descriptor_ >= 0) return poll(&event, 1, int(most.count())) > 0;
+        std::this_thread::sleep_for(most / 10);  // a kernel or a sandbox without pidfd_open()
+        siginfo_t end{};
+        return waitid(P_PID, id_t(process_), &end, WEXITED | WNOHANG | WNOWAIT) == 0 && end.si_pid == process_;
     }
 
     double processor_time() const  // s

@@ -14,9 +14,7 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <numeric>
-#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -100,19 +98,6 @@ void refuse_untested(const std::string& extension, const std::string& file)
                               "; convert it, or read it all the same with --any-mesh");
 }
 
-/// Removes the loaders of all other formats: assimp also chooses a loader by the content of a file.
-void keep_tested_loaders(Assimp::Importer& importer)
-{
-    for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
-        std::istringstream extensions(importer.GetImporterInfo(i)->mFileExtensions);
-        const bool keeps = std::any_of(std::istream_iterator<std::string>(extensions), {}, is_tested);
-        if (keeps) continue;
-        Assimp::BaseImporter* const loader = importer.GetImporter(i);
-        importer.UnregisterLoader(loader);
-        delete loader;
-    }
-}
-
 /// Returns the number of triangles after triangulation. Throws FileError unless each face has 1 to most_corners
 /// corners, and all corners are vertices of the mesh.
 std::uint64_t checked_triangles(const aiMesh& mesh, unsigned index, const std::string& file)
@@ -180,10 +165,7 @@ std::string prepare_import(const std::filesystem::path& file, MeshFormats format
         throw FileError(
             file.string(),
             "is a packed COLLADA file, which cannot be read here; unpack it (unzip) and give the .dae in it");
-    if (formats == MeshFormats::Tested) {
-        refuse_untested(extension, file.string());
-        keep_tested_loaders(importer);
-    }
+    if (formats == MeshFormats::Tested) refuse_untested(extension, file.string());
     if (extension == ".3mf") check_3mf(bytes.view, file.string());
     if (extension == ".gltf" || extension == ".glb")
         check_gltf(bytes.view, file.string());  // assimp decides by the extension, too

@@ -44,6 +44,7 @@ void check_unpacked_size(std::string_view package, const std::string& file)
 struct Object {
     std::uint64_t triangles = 0;
     std::vector<std::string> components;
+    int levels = 1;  ///< of objects, with its own
     enum class State { New, Open, Counted } state = State::New;
 };
 using Objects = std::map<std::string, Object>;
@@ -68,26 +69,32 @@ Objects objects_of(std::string_view model)
     return objects;
 }
 
-/// Returns the number of triangles of an object with all its components.
-std::uint64_t count(Objects& objects, const std::string& id, int depth, const std::string& file)
+/// Counts the triangles and the levels of an object with all its components. `depth`: how many objects contain it on
+/// the way here.
+const Object& count(Objects& objects, const std::string& id, int depth, const std::string& file)
 {
     constexpr int deepest = 1000;
+    const auto too_deep = [&] {
+        return FileError(file, "its components are nested more than " + std::to_string(deepest) + " deep; merge them");
+    };
     const auto found = objects.find(id);
     if (found == objects.end()) throw FileError(file, "a component is object \"" + id + "\", which does not exist");
     Object& object = found->second;
     if (object.state == Object::State::Open) throw FileError(file, "object \"" + id + "\" contains itself");
-    if (object.state == Object::State::Counted) return object.triangles;
-    if (depth > deepest)
-        throw FileError(file, "its components are nested more than " + std::to_string(deepest) + " deep; merge them");
+    if (object.state == Object::State::Counted) return object;
+    if (depth >= deepest) throw too_deep();
     object.state = Object::State::Open;
     for (const std::string& component : object.components) {
-        object.triangles += count(objects, component, depth + 1, file);
+        const Object& inner = count(objects, component, depth + 1, file);
+        object.triangles += inner.triangles;
+        object.levels = std::max(object.levels, inner.levels + 1);
         if (object.triangles > most_triangles)
             throw FileError(file, "its components repeat triangles to more than " + std::to_string(most_triangles) +
                                       ", needs fewer; remove components");
     }
+    if (object.levels > deepest) throw too_deep();
     object.state = Object::State::Counted;
-    return object.triangles;
+    return object;
 }
 
 }  // namespace
@@ -98,7 +105,7 @@ void check_3mf(std::string_view package, const std::string& file)
     const std::string model = model_of_3mf(package, std::string_view::npos);
     if (model.empty()) throw FileError(file, "has no 3D model at the path that its _rels/.rels names; export it again");
     Objects objects = objects_of(model);
-    for (const auto& [id, object] : objects) count(objects, id, 1, file);
+    for (const auto& [id, object] : objects) count(objects, id, 0, file);
 }
 
 std::string model_of_3mf(std::string_view package, std::size_t most)
