@@ -16,8 +16,8 @@ namespace spawnfield {
 /// of their own, this ends that process alone, and the caller gets a FileError that names the file.
 ///
 /// The process has limits, which grow with the size of all files that it opens: 900 MB of memory, and 900 MB more for
-/// each MB above 1 MB; 12 s of processor time, and 5 s more for each MB. It is killed if it waits for 15 s without
-/// doing anything, and if the caller's thread ends.
+/// each MB above 1 MB; and, while one of those libraries reads, 12 s of processor time, and 5 s more for each MB. It is
+/// killed if it waits for 15 s without doing anything, and if the caller's thread ends.
 struct ReaderProcess {
     /// A program whose main() calls serve_reader() first; `/proc/self/exe` is the calling program itself.
     std::filesystem::path program;

@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <fstream>
+#include <limits>
 
 namespace spawnfield {
 namespace {
@@ -16,6 +18,7 @@ namespace {
 constexpr double megabyte = 1e6;
 constexpr double memory_per_megabyte = 900 * megabyte;  // bytes; a flat elevation model is packed to 1 : 700
 constexpr double least_seconds = is_sanitized ? 200 : 12, seconds_per_megabyte = is_sanitized ? 100 : 5;
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr rlim_t most_stack = 8 << 20;  // bytes
 
 /// Returns the private writable memory of this process, which RLIMIT_DATA limits, in bytes. Source: proc(5), statm.
@@ -34,6 +37,13 @@ void limit(__rlimit_resource resource, double value)
     getrlimit(resource, &both);
     both.rlim_cur = value >= double(both.rlim_max) ? both.rlim_max : rlim_t(value);
     setrlimit(resource, &both);
+}
+
+double processor_time()  // of all threads of this process, s
+{
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
 template <std::size_t size>
@@ -62,7 +72,7 @@ ReaderLimits::ReaderLimits(ReaderStatus& status) : status_(status), at_start_(da
 {
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_STACK, most_stack);
-    set();
+    limit_memory();
 }
 
 void ReaderLimits::confine(const std::vector<std::filesystem::path>& folders)
@@ -78,26 +88,45 @@ void ReaderLimits::opens(const std::filesystem::path& file, std::uint64_t bytes)
                                   [&](const std::filesystem::path& folder) { return is_inside(path, folder); }))
         throw FileError(file.string(), "is " + (path == file ? "" : path.string() + ", ") +
                                            "outside of the folders of --confine; move it there, or add its folder");
-    if (!files_.insert(path).second) return;
-    bytes_ += bytes;
-    set();
+    if (is_reading_ && its_files_.insert(path).second) {
+        its_bytes_ += bytes;
+        limit_time();
+    }
+    if (files_.insert(path).second) {
+        bytes_ += bytes;
+        limit_memory();
+    }
 }
 
 void ReaderLimits::begins(const char* reader, const std::filesystem::path& file)
 {
     copy(reader, status_.reader);
     copy(file.string(), status_.file);
+    is_reading_ = true;
+    its_files_.clear();
+    its_bytes_ = 0;
+    began_at_ = processor_time();
+    limit_time();
 }
 
-void ReaderLimits::ends() { copy("", status_.reader); }
-
-void ReaderLimits::set()
+void ReaderLimits::ends(bool has_failed)
 {
-    const double megabytes = double(bytes_) / megabyte, memory = memory_per_megabyte * std::max(1.0, megabytes);
-    status_.seconds = std::ceil(least_seconds + seconds_per_megabyte * megabytes);
+    is_reading_ = false;
+    limit(RLIMIT_CPU, unlimited);
+    if (!has_failed) copy("", status_.reader);  // after an error the parent needs the name
+}
+
+void ReaderLimits::limit_memory()
+{
+    const double memory = memory_per_megabyte * std::max(1.0, double(bytes_) / megabyte);
     status_.gigabytes = memory / 1e9;
-    limit(RLIMIT_CPU, status_.seconds);
     if (!is_sanitized) limit(RLIMIT_DATA, double(at_start_) + memory);
+}
+
+void ReaderLimits::limit_time()
+{
+    status_.seconds = std::ceil(least_seconds + seconds_per_megabyte * double(its_bytes_) / megabyte);
+    limit(RLIMIT_CPU, std::ceil(began_at_) + status_.seconds);
 }
 
 }  // namespace spawnfield

@@ -32,9 +32,10 @@ struct ReaderStatus {
 };
 static_assert(sizeof(ReaderStatus) == 4096);
 
-/// Limits the memory, the processor time and the stack of this process. The limits grow with the size of the files that
-/// it opens; each file counts once. Builds with a sanitizer have no limit of memory, because the sanitizer's own is
-/// much larger.
+/// Limits the memory and the stack of this process, and the processor time of each reading by a foreign library; own
+/// code, for example splitting the meshes of a robot, may take as long as it needs. The limits grow with the size of
+/// the files that are opened; each file counts once. Builds with a sanitizer have no limit of memory, because the
+/// sanitizer's own is much larger.
 class ReaderLimits : public InputWatch {
 public:
     /// Sets the limits that hold while small files are read. `status` must live as long as this.
@@ -47,16 +48,22 @@ public:
 
     void opens(const std::filesystem::path& file, std::uint64_t bytes) override;
     void begins(const char* reader, const std::filesystem::path& file) override;
-    void ends() override;
+    void ends(bool has_failed) override;
 
 private:
-    void set();
+    void limit_memory();
+    void limit_time();
 
     ReaderStatus& status_;
     std::set<std::filesystem::path> files_;                       ///< without links
     std::optional<std::vector<std::filesystem::path>> confined_;  ///< folders without links
     std::uint64_t bytes_ = 0;                                     ///< of all files
-    const std::uint64_t at_start_;                                ///< memory of this process when it began, bytes
+    bool is_reading_ = false;                                     ///< a foreign library reads
+    /// What it has opened since it began.
+    std::set<std::filesystem::path> its_files_;
+    std::uint64_t its_bytes_ = 0;
+    double began_at_ = 0;           ///< processor time of this process, s
+    const std::uint64_t at_start_;  ///< memory of this process when it began, bytes
 };
 
 }  // namespace spawnfield

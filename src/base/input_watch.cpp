@@ -26,8 +26,7 @@ ForeignReading::ForeignReading(const char* reader, const std::filesystem::path& 
 
 ForeignReading::~ForeignReading()
 {
-    // After an error the watch keeps the name of the file that caused it.
-    if (watch_of_process != nullptr && std::uncaught_exceptions() == 0) watch_of_process->ends();
+    if (watch_of_process != nullptr) watch_of_process->ends(std::uncaught_exceptions() > 0);
 }
 
 }  // namespace spawnfield

@@ -15,8 +15,8 @@ public:
     virtual void opens(const std::filesystem::path& file, std::uint64_t bytes) = 0;
     /// A foreign library, the `reader` ("mesh reader"), begins to read a file.
     virtual void begins(const char* reader, const std::filesystem::path& file) = 0;
-    /// It has read the file without an error.
-    virtual void ends() = 0;
+    /// It has ended. `has_failed`: by an exception.
+    virtual void ends(bool has_failed) = 0;
 };
 
 /// Sets the watch of this process. It must live until the process ends.
