@@ -13,6 +13,8 @@
 namespace spawnfield {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// These are false for a path that cannot exist, for example a URI that is too long for a name.
 bool does_exist(const fs::path& path)
 {
@@ -34,8 +36,6 @@ void count_files(const fs::path& found)
     for (const fs::directory_entry& entry : fs::directory_iterator(found, impossible))
         if (is_file(entry.path())) count_input(entry.path());
 }
-
-namespace fs = std::filesystem;
 
 std::string without(const std::string& prefix, const std::string& text) { return text.substr(prefix.size()); }
 
