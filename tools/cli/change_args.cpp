@@ -3,6 +3,7 @@
 #include "angle.h"
 #include "messages.h"
 #include "numbers.h"
+#include "session.h"
 
 #include <spawnfield/column.h>
 #include <spawnfield/error.h>
