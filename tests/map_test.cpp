@@ -182,12 +182,15 @@ TEST_CASE("every altered byte is detected: by queries in what they read, by veri
     }
 }
 
-TEST_CASE("default resolutions are coarser, with a notice, if a map would be too large or too far from the origin")
+TEST_CASE("the default occupancy resolution is coarser, with a notice, if a map would have too many voxels")
 {
     const TempFolder temp;
     const fs::path file = temp.write("scene.txt", "");
     Scene far;
-    hand::add_mesh(far, Label::Terrain, hand::moved(hand::rectangle(20, 20), {{9000, 0, 0}, Mat3::Identity()}));
+    hand::add_mesh(far, Label::Terrain, hand::moved(hand::rectangle(2, 2), {{9000, 0, 0}, Mat3::Identity()}));
+    CHECK(bake(far, file, temp / "map", {}).notices.empty());
+    CHECK(read_map(temp / "map").occupancy_resolution == 0.25);
+    hand::add_mesh(far, Label::Terrain, hand::moved(hand::rectangle(2, 2), {{-9000, 0, 0}, Mat3::Identity()}));
     const BakeReport report = bake(far, file, temp / "map", {});
     REQUIRE(report.notices.size() == 1);
     CHECK_THAT(report.notices[0], Contains("occupancy resolution is 0.5 m"));

@@ -3,6 +3,8 @@
 #include <spawnfield/export.h>
 #include <spawnfield/map.h>
 
+#include <limits>
+
 namespace spawnfield {
 
 struct BakeOptions {
@@ -11,6 +13,8 @@ struct BakeOptions {
     Bounds bounds = {};               ///< empty: the bounds of the scene
     ZRange z = {};  ///< z limits of the map; without limits: those of `bounds`, unless `bounds` is empty
     bool allow_no_terrain = false;
+    /// Bytes. A map that would need more, by an estimate before the work, is refused with MemoryError.
+    double max_memory = std::numeric_limits<double>::infinity();
     int threads = 0;
     Progress progress = {};
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/error.h>
 #include <spawnfield/export.h>
 
 #include <filesystem>
@@ -10,6 +11,12 @@ namespace spawnfield {
 /// Throws FileError unless the file exists and is a regular file (links are followed). Call it before opening a file,
 /// because opening a pipe waits for its writer, and reading a device may never end.
 SPAWNFIELD_API void require_file(const std::filesystem::path& file);
+
+/// Returns whether a path is a folder or lies in it, at any depth. Both must be absolute and without links.
+SPAWNFIELD_API bool is_in_folder(const std::filesystem::path& path, const std::filesystem::path& folder);
+
+/// Returns the error for a file that cannot be reached: a loop of links, or a folder without permission.
+SPAWNFIELD_API FileError unreachable_file(const std::filesystem::filesystem_error& error);
 
 /// Returns all bytes of a file. Throws FileError.
 SPAWNFIELD_API std::string read_file(const std::filesystem::path& file);

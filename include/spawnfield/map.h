@@ -11,23 +11,25 @@
 
 namespace spawnfield {
 
-/// Version 7 stores the names of nodes and materials of meshes in geometry.bin, for rules of place. Version 6 stores a
-/// hash of each part there, for update_map(). Version 5 stores geometry.bin in small tiles
-/// under a tree; the tiles of an older map are converted when it is opened, which takes about 0.5 s for a million
-/// triangles. Version 4 stores less in bounds.bin: a tile whose cells are all the same only once, and an interval list
-/// that cells share only once. Version 3 added z_limits and floors. A map of version 2 has no z limits, and its floors
-/// are computed from terrain.tiff.
-inline constexpr int map_format_version = 7;
+/// Version 8 has an occupancy_origin; it is only written for maps that need one, others have version 7. Version 7
+/// stores the names of nodes and materials of meshes in geometry.bin, for rules of place. Version 6 stores a hash of
+/// each part there, for update_map(). Version 5 stores geometry.bin in small tiles under a tree; the tiles of an older
+/// map are converted when it is opened, which takes about 0.5 s for a million triangles. Version 4 stores less in
+/// bounds.bin: a tile whose cells are all the same only once, and an interval list that cells share only once. Version
+/// 3 added z_limits and floors. A map of version 2 has no z limits, and its floors are computed from terrain.tiff.
+inline constexpr int map_format_version = 8;
 
+class MapFiles;    // of a map that was read: the files that are read later
 struct MapChange;  // of a changed map: what differs from the map before
 
 /// A scene, prepared for queries. `folder` is empty until the map is written or read.
 struct Map {
     std::string name;
-    Bounds bounds;                    ///< poses beyond them in x and y are `outside`
-    ZRange z_limits;                  ///< poses beyond them are `outside`; layers beyond them are not ground
-    double resolution = 0.1;          ///< side of a terrain cell, m
-    double occupancy_resolution = 0;  ///< side of a voxel, m
+    Bounds bounds;                         ///< poses beyond them in x and y are `outside`
+    ZRange z_limits;                       ///< poses beyond them are `outside`; layers beyond them are not ground
+    double resolution = 0.1;               ///< side of a terrain cell, m
+    double occupancy_resolution = 0;       ///< side of a voxel, m
+    Vec3 occupancy_origin = Vec3::Zero();  ///< where 0, 0, 0 of occupancy.bt is in the scene, m
     Geometry geometry;
     SolidBounds solid_bounds;         ///< for the cells of the terrain's raster
     std::optional<GeoOrigin> origin;  ///< the scene's place in the coordinates of a survey
@@ -39,8 +41,9 @@ struct Map {
     std::string scene_hash;  ///< xxh64 of that file, 16 hexadecimal digits
     std::string hash;        ///< 16 hexadecimal digits, from the checksums of the map's files
     std::filesystem::path folder;
-    int format_version = map_format_version;  ///< of the folder
-    std::vector<std::string> changes = {};    ///< of a changed map (changes.h), in words: "without crate*", …
+    std::shared_ptr<const MapFiles> files = {};  ///< of the folder; nullptr for a map that was not read
+    int format_version = map_format_version;     ///< of the folder
+    std::vector<std::string> changes = {};       ///< of a changed map (changes.h), in words: "without crate*", …
     std::shared_ptr<const MapChange> change = {};
 };
 

@@ -13,6 +13,10 @@ namespace spawnfield {
 
 class Descriptor;
 
+/// Returns whether the file exists as a pipe or a device, or is a system link to standard output (/dev/stdout,
+/// /proc/self/fd/1), even if that is redirected to a regular file. OutputFile writes such files directly.
+SPAWNFIELD_API bool is_written_directly(const std::filesystem::path& file);
+
 /// A file that appears complete or not at all. It is written beside its final name, and commit() renames it. Without
 /// commit(), it is removed; if the process was killed, the next OutputFile of this name removes it. A pipe or device
 /// (for example /dev/null, /dev/stdout) is written directly. If the name is a link, the target of the link is written.

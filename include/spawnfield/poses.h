@@ -79,7 +79,8 @@ SPAWNFIELD_API std::string repaired_csv(const PoseTable& table, const RepairList
 /// cannot be used, roll and pitch are 0, and the last four are empty. With a HeadingRule of several headings, the
 /// column valid_headings follows (bit k of the number: heading k); then `ground`, the height of the layer onto which
 /// the robot was let down, and `clearance` or `way` (RasterRest::free_length) with a rule that measures it. Passes the
-/// text to `sink` in pieces. `layer` is empty if the ground is not a layer. With `aerial`, also writes the aerial poses
+/// text to `sink` in pieces. Parts of a raster (raster_in_parts()) that are written one after the other make the same
+/// text as the whole one. `layer` is empty if the ground is not a layer. With `aerial`, also writes the aerial poses
 /// of a 3D raster that are not in raster.poses, at their places in the order. Several threads make the text (0: all
 /// cores); it is the same for any number of them.
 SPAWNFIELD_API void write_raster_csv(const RasterResult& raster, bool aerial,

@@ -67,13 +67,14 @@ struct RasterOptions {
     Progress progress = {};
 };
 
-/// Columns are at x0 + i * step, y0 + j * step, heights at z0 + k * step_z.
+/// Columns are at x0 + i * step, y0 + (first_row + j) * step, heights at z0 + k * step_z.
 struct RasterGrid {
     double x0 = 0, y0 = 0, z0 = 0, step = 1, step_z = 1;
     int cols = 0, rows = 0, heights = 0;
+    int first_row = 0;  ///< of the part of a raster; 0 for a whole one
 
     double x_of(int i) const { return x0 + i * step; }
-    double y_of(int j) const { return y0 + j * step; }
+    double y_of(int j) const { return y0 + (first_row + j) * step; }
     double z_of(int k) const { return z0 + k * step_z; }
     /// Returns the number of the lowest step at or above this height, to touch_tolerance; `heights` if there is none.
     SPAWNFIELD_API int step_above(double height) const;
@@ -128,6 +129,13 @@ struct RasterResult {
 /// Returns the verdict on every pose of a raster. Throws ArgumentError for options beyond their limits, for bounds with
 /// min > max, and for more than 2^31 columns. Throws FileError for a damaged map.
 SPAWNFIELD_API RasterResult raster(const Judge& judge, const RasterOptions& options);
+
+/// The same for large rasters: calls take(part) for consecutive rows, so that the memory does not grow with the raster.
+/// A part has about `poses` poses, at least a row. Its grid has its rows; put together, the poses of all parts are
+/// those of raster(). Returns the result without poses.
+SPAWNFIELD_API RasterResult raster_in_parts(const Judge& judge, const RasterOptions& options,
+                                            const std::function<void(const RasterResult& part)>& take,
+                                            std::int64_t poses = 1 << 20);
 
 /// Calls visit for each pose of a raster, in their order. With `aerial`, also calls it for the aerial poses of a 3D
 /// raster that are not in raster.poses, at their places in the order.

@@ -133,7 +133,9 @@ struct SceneOptions {
     /// Included models that are not found, and files of a scene.yaml that do not exist, are left out with a notice
     /// instead of an error.
     bool allow_missing = false;
-    bool strict = false;    ///< other files that are not found (for example, a mesh) are an error instead of a notice
+    /// Other files that are not found (for example, a mesh), and parts that are far away from all others, are an error
+    /// instead of a notice.
+    bool strict = false;
     bool any_mesh = false;  ///< read meshes in all formats that assimp reads, not only in those that are tested
     /// Settings of a bare elevation model: keys as under `heightmap:`, for example "size: [513, 513], z: [0, 75]".
     std::string heightmap = {};

@@ -29,6 +29,7 @@ public:
     bool is_interrupted() const override { return is_interrupted_; }
     void forget_interruption() override { is_interrupted_ = false; }
     bool wants_text() const override { return wants_text_; }
+    bool wants_values() const override { return true; }
     void write(std::string_view text) override { text_ += text; }
     void flush() override {}
     void summarize(const std::string&, const std::string& json, bool) override { summary_ = json; }

@@ -18,6 +18,7 @@ class NoHost : public cli::Host {
     bool is_interrupted() const override { return false; }
     void forget_interruption() override {}
     bool wants_text() const override { return false; }
+    bool wants_values() const override { return true; }
     void write(std::string_view) override {}
     void flush() override {}
     void summarize(const std::string&, const std::string&, bool) override {}

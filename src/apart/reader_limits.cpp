@@ -1,15 +1,14 @@
 #include "apart/reader_limits.h"
 
-#include <spawnfield/error.h>
+#include "base/process_limits.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
+#include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <ctime>
-#include <fstream>
 #include <limits>
 
 namespace spawnfield {
@@ -20,24 +19,6 @@ constexpr double memory_per_megabyte = 900 * megabyte;  // bytes; a flat elevati
 constexpr double least_seconds = is_sanitized ? 200 : 12, seconds_per_megabyte = is_sanitized ? 100 : 5;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr rlim_t most_stack = 8 << 20;  // bytes
-
-/// Returns the private writable memory of this process, which RLIMIT_DATA limits, in bytes. Source: proc(5), statm.
-std::uint64_t data_memory()
-{
-    std::ifstream statm("/proc/self/statm");
-    std::uint64_t pages = 0;
-    for (int field = 0; field < 6; ++field) statm >> pages;
-    return pages * std::uint64_t(sysconf(_SC_PAGESIZE));
-}
-
-/// Lowers the soft limit to the value, as far as the hard limit allows.
-void limit(__rlimit_resource resource, double value)
-{
-    rlimit both{};
-    getrlimit(resource, &both);
-    both.rlim_cur = value >= double(both.rlim_max) ? both.rlim_max : rlim_t(value);
-    setrlimit(resource, &both);
-}
 
 double processor_time()  // of all threads of this process, s
 {
@@ -61,31 +42,26 @@ std::filesystem::path without_links(const std::filesystem::path& path)
     return unreachable ? path : found;
 }
 
-bool is_inside(const std::filesystem::path& path, const std::filesystem::path& folder)
-{
-    return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
-}
-
 }  // namespace
 
 ReaderLimits::ReaderLimits(ReaderStatus& status) : status_(status), at_start_(data_memory())
 {
-    limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_STACK, most_stack);
+    limit_resource(RLIMIT_CORE, 0);
+    limit_resource(RLIMIT_STACK, most_stack);
     limit_memory();
 }
 
 void ReaderLimits::confine(const std::vector<std::filesystem::path>& folders)
 {
-    confined_.emplace();
-    for (const std::filesystem::path& folder : folders) confined_->push_back(without_links(folder));
+    for (const std::filesystem::path& folder : folders) confined_.push_back(without_links(folder));
 }
 
 void ReaderLimits::opens(const std::filesystem::path& file, std::uint64_t bytes)
 {
     const std::filesystem::path path = without_links(file);
-    if (confined_ && std::none_of(confined_->begin(), confined_->end(),
-                                  [&](const std::filesystem::path& folder) { return is_inside(path, folder); }))
+    if (!confined_.empty() &&
+        std::none_of(confined_.begin(), confined_.end(),
+                     [&](const std::filesystem::path& folder) { return is_in_folder(path, folder); }))
         throw FileError(file.string(), "is " + (path == file ? "" : path.string() + ", ") +
                                            "outside of the folders of --confine; move it there, or add its folder");
     if (is_reading_ && its_files_.insert(path).second) {
@@ -112,7 +88,7 @@ void ReaderLimits::begins(const char* reader, const std::filesystem::path& file)
 void ReaderLimits::ends(bool has_failed)
 {
     is_reading_ = false;
-    limit(RLIMIT_CPU, unlimited);
+    limit_resource(RLIMIT_CPU, unlimited);
     if (!has_failed) copy("", status_.reader);  // after an error the parent needs the name
 }
 
@@ -120,13 +96,13 @@ void ReaderLimits::limit_memory()
 {
     const double memory = memory_per_megabyte * std::max(1.0, double(bytes_) / megabyte);
     status_.gigabytes = memory / 1e9;
-    if (!is_sanitized) limit(RLIMIT_DATA, double(at_start_) + memory);
+    if (!is_sanitized) limit_resource(RLIMIT_DATA, at_start_ + memory);
 }
 
 void ReaderLimits::limit_time()
 {
     status_.seconds = std::ceil(least_seconds + seconds_per_megabyte * double(its_bytes_) / megabyte);
-    limit(RLIMIT_CPU, std::ceil(began_at_) + status_.seconds);
+    limit_resource(RLIMIT_CPU, std::ceil(began_at_) + status_.seconds);
 }
 
 }  // namespace spawnfield

@@ -1,28 +1,15 @@
 #pragma once
 
 #include "base/input_watch.h"
+#include "base/sanitized.h"
 
-#include <optional>
 #include <set>
 #include <vector>
 
 namespace spawnfield {
 
-/// This build has a sanitizer, whose own memory is much larger than any limit, and which is slow.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool is_sanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-inline constexpr bool is_sanitized = true;
-#else
-inline constexpr bool is_sanitized = false;
-#endif
-#else
-inline constexpr bool is_sanitized = false;
-#endif
-
-/// What a reader process tells its parent while it works, in memory that both share, so that the parent can read it
-/// after a crash.
+/// The state of a reader process, in memory that it shares with its parent. After a crash, the parent can still read
+/// it.
 struct ReaderStatus {
     std::uint64_t answer_bytes = 0;
     double seconds = 0;            ///< limit of processor time, s
@@ -41,7 +28,7 @@ public:
     /// Sets the limits that hold while small files are read. `status` must live as long as this.
     explicit ReaderLimits(ReaderStatus& status);
 
-    /// From now on opens() refuses files outside of these folders, after links are resolved: it throws FileError.
+    /// From now on opens() throws FileError for files outside of these folders, after links are resolved.
     void confine(const std::vector<std::filesystem::path>& folders);
     /// Returns all files that were opened, without links.
     const std::set<std::filesystem::path>& files() const { return files_; }
@@ -55,15 +42,15 @@ private:
     void limit_time();
 
     ReaderStatus& status_;
-    std::set<std::filesystem::path> files_;                       ///< without links
-    std::optional<std::vector<std::filesystem::path>> confined_;  ///< folders without links
-    std::uint64_t bytes_ = 0;                                     ///< of all files
-    bool is_reading_ = false;                                     ///< a foreign library reads
+    std::set<std::filesystem::path> files_;        ///< without links
+    std::vector<std::filesystem::path> confined_;  ///< folders without links; empty: all files are allowed
+    std::uint64_t bytes_ = 0;                      ///< of all files
+    bool is_reading_ = false;                      ///< a foreign library reads
     /// What it has opened since it began.
     std::set<std::filesystem::path> its_files_;
     std::uint64_t its_bytes_ = 0;
-    double began_at_ = 0;           ///< processor time of this process, s
-    const std::uint64_t at_start_;  ///< memory of this process when it began, bytes
+    double began_at_ = 0;    ///< processor time of this process, s
+    const double at_start_;  ///< memory of this process when it began, bytes
 };
 
 }  // namespace spawnfield

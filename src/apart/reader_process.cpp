@@ -118,12 +118,18 @@ private:
 const std::string damaged = "; is the file damaged?";
 const std::string remedy = damaged + " If you trust it, --trusted reads it without limits";
 
+/// Returns the file that was being read; `file` was asked for.
+std::string file_name(const ReaderStatus& last, const std::string& file)
+{
+    return last.file[0] == 0 ? file : last.file;
+}
+
 std::string reader_name(const ReaderStatus& last) { return last.reader[0] == 0 ? "reader" : last.reader; }
 
 /// Throws FileError: what happened to a process that gave no answer. `file` was asked for.
 [[noreturn]] void throw_end(int status, bool stalled, const ReaderStatus& last, const std::string& file)
 {
-    const std::string at = last.file[0] == 0 ? file : last.file;
+    const std::string at = file_name(last, file);
     const std::string reader = reader_name(last);
     if (stalled) throw FileError(at, "the " + reader + " waited for 15 s without doing anything" + remedy);
     if (!WIFSIGNALED(status))
@@ -147,9 +153,9 @@ std::string reader_name(const ReaderStatus& last) { return last.reader[0] == 0 ?
 [[noreturn]] void rethrow(AnswerKind kind, ArchiveReader& answer, const ReaderStatus& last, const std::string& file)
 {
     if (kind == AnswerKind::OutOfMemory)
-        throw FileError(last.file[0] == 0 ? file : last.file,
-                        "the " + reader_name(last) + " needs more than " + number(last.gigabytes) +
-                            " GB of memory, the limit for files of this size" + remedy);
+        throw FileError(file_name(last, file), "the " + reader_name(last) + " needs more than " +
+                                                   number(last.gigabytes) +
+                                                   " GB of memory, the limit for files of this size" + remedy);
     std::string text, message;
     answer(text);
     if (kind == AnswerKind::FileError) rethrow_file_error(text);
@@ -166,7 +172,8 @@ Result asked(RequestKind kind, std::string name, Options options, const ReaderPr
     MemoryFile request("spawnfield-request"), answer("spawnfield-answer");
     ArchiveWriter out;
     std::vector<fs::path> confine = process.confine;
-    out(kind, name, confine, options);
+    std::string own_version = version();
+    out(own_version, kind, name, confine, options);
     request.write(0, out.take());
     answer.write(0, std::string(sizeof(ReaderStatus), '\0'));
     bool stalled = false;

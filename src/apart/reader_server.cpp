@@ -5,6 +5,7 @@
 #include "model/built_in_models.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 #include <spawnfield/reader_process.h>
 
 #include <sys/prctl.h>
@@ -29,9 +30,13 @@ std::string answer_to(std::string_view request, ReaderLimits& limits)
 {
     ArchiveReader in(request);
     ArchiveWriter out;
+    std::string asked_by, name;
     RequestKind kind{};
-    std::string name;
     std::vector<fs::path> confine;
+    in(asked_by);
+    if (asked_by != version())
+        throw std::runtime_error("the program that reads files has version " + version() + ", the library " + asked_by +
+                                 "; install both from the same build");
     in(kind, name, confine);
     if (!confine.empty()) {
         confine.push_back(built_in_folder());
@@ -83,9 +88,8 @@ std::string served(std::string_view request, const ReaderStatus& status, ReaderL
         const std::string prefix = all.substr(0, all.size() - message.size());  // "FUNCTION: ", or nothing
         return answer(AnswerKind::ArgumentError,
                       texts({prefix.substr(0, prefix.size() - std::min<std::size_t>(2, prefix.size())), message}));
-    } catch (const fs::filesystem_error& error) {  // a loop of links, a folder without permission
-        return answer(AnswerKind::FileError,
-                      texts({error.path1().string() + ": cannot be reached: " + error.code().message()}));
+    } catch (const fs::filesystem_error& error) {
+        return answer(AnswerKind::FileError, texts({unreachable_file(error).what()}));
     } catch (const std::bad_alloc&) {
         return answer(AnswerKind::OutOfMemory, "");
     } catch (const std::exception& error) {

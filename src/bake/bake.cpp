@@ -17,6 +17,7 @@
 #include <spawnfield/bake.h>
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>
+#include <spawnfield/memory.h>
 #include <spawnfield/output_folder.h>
 
 #include <algorithm>
@@ -69,12 +70,12 @@ double default_occupancy_resolution(const Bounds& bounds, double resolution, Bak
 {
     const double wanted = 2.5 * resolution;
     double voxel = wanted;
-    const double reach = std::max(bounds.min.cwiseAbs().maxCoeff(), bounds.max.cwiseAbs().maxCoeff());
-    while (reach / voxel > 32767) voxel *= 2;
+    const double size = (bounds.max - bounds.min).maxCoeff();
+    while (size / voxel > 65000) voxel *= 2;
     if (voxel > wanted)
         report.notices.push_back("occupancy resolution is " + number(voxel) +
-                                 " m, because OctoMap reaches 32768 voxels from the origin and the map reaches " +
-                                 number(reach) + " m; --occupancy-resolution sets it");
+                                 " m, because OctoMap has 65536 voxels along each axis and the map is " +
+                                 rounded(size) + " m long; --occupancy-resolution sets it");
     return voxel;
 }
 
@@ -162,6 +163,17 @@ WrittenFiles write_files(const Map& map, const TerrainMap& terrain, const Earlie
     return out;
 }
 
+/// Throws MemoryError if a bake most likely needs more memory than it may have.
+void check_memory(const Scene& scene, const Map& map, double limit)
+{
+    // Measured: the largest resident memory of bakes of boxes, elevation models, buildings and a city.
+    constexpr double program = 80e6, per_triangle = 300, per_column = 20;  // bytes
+    const Vec3 size = map.bounds.max - map.bounds.min;
+    frame_around(map.bounds, map.resolution);  // refuses too many cells, whatever the limit is
+    require_cell_memory({program + per_triangle * double(scene.triangles.size()), per_column}, "--resolution",
+                        map.resolution, size.x() * size.y(), limit);
+}
+
 /// Checks the options. Returns a map with its names, bounds and resolutions, but without geometry, layers and floors.
 /// `function` is the name in error messages. For a scene that cannot become a map, it calls refuse(reason), which must
 /// throw.
@@ -197,6 +209,8 @@ Map plan_map(const char* function, const Scene& scene, const BakeOptions& option
     map.occupancy_resolution = options.occupancy_resolution > 0
                                    ? options.occupancy_resolution
                                    : default_occupancy_resolution(map.bounds, map.resolution, report);
+    map.occupancy_origin = occupancy_origin(map.bounds, map.occupancy_resolution);
+    check_memory(scene, map, options.max_memory);
     return map;
 }
 

@@ -3,6 +3,7 @@
 #include <spawnfield/error.h>
 #include <spawnfield/input_file.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -36,6 +37,16 @@ void require_file(const fs::path& file)
     const fs::file_status status = fs::status(file, error);
     if (status.type() != fs::file_type::regular) throw FileError(file.string(), complaint_about(status.type(), error));
     count_input(file);
+}
+
+bool is_in_folder(const fs::path& path, const fs::path& folder)
+{
+    return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+FileError unreachable_file(const fs::filesystem_error& error)
+{
+    return {error.path1().string(), "cannot be reached: " + error.code().message()};
 }
 
 namespace {

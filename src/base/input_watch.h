@@ -7,7 +7,7 @@
 
 namespace spawnfield {
 
-/// Is told which files are read. Only a process that reads files for another one has a watch (apart/reader_limits.h).
+/// Follows which files are read. Only a process that reads files for another one has a watch (apart/reader_limits.h).
 class InputWatch {
 public:
     virtual ~InputWatch() = default;
@@ -22,10 +22,10 @@ public:
 /// Sets the watch of this process. It must live until the process ends.
 void set_input_watch(InputWatch& watch);
 
-/// Tells the watch that a regular file is about to be opened; does nothing without a watch.
+/// Calls InputWatch::opens() for a regular file that is about to be opened; does nothing without a watch.
 SPAWNFIELD_MODULE_API void count_input(const std::filesystem::path& file);
 
-/// Tells the watch that a foreign library reads a file as long as this object lives.
+/// As long as this object lives, a foreign library reads a file: calls InputWatch::begins() and ends().
 class ForeignReading {
 public:
     ForeignReading(const char* reader, const std::filesystem::path& file);

@@ -17,17 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns whether the file is a pipe, a device, or a system link to the standard output (/dev/stdout,
-/// /proc/self/fd/1), even if that is redirected to a regular file. Such files are written directly.
-bool is_special(const fs::path& file)
-{
-    std::error_code ignored;
-    if (!fs::exists(file, ignored)) return false;
-    const std::string name = fs::absolute(file, ignored).lexically_normal().string();
-    const bool is_of_system = name.starts_with("/dev/") || name.starts_with("/proc/");
-    return !fs::is_regular_file(file, ignored) || (is_of_system && fs::is_symlink(file, ignored));
-}
-
 /// Follows links, so that the target is replaced and the links stay.
 fs::path target_of(const fs::path& file)
 {
@@ -57,11 +46,21 @@ Temporary second_name_of(const fs::path& file)
 
 }  // namespace
 
+bool is_written_directly(const fs::path& file)
+{
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) return false;
+    const std::string name = fs::absolute(file, ignored).lexically_normal().string();
+    const bool is_of_system = name.starts_with("/dev/") || name.starts_with("/proc/");
+    return (!fs::is_regular_file(file, ignored) && !fs::is_directory(file, ignored)) ||
+           (is_of_system && fs::is_symlink(file, ignored));
+}
+
 OutputFile::OutputFile(fs::path file) : file_(std::move(file))
 {
     std::error_code ignored;
     if (fs::is_directory(file_, ignored)) fail("is a folder");
-    if (is_special(file_))
+    if (is_written_directly(file_))
         open_directly();
     else
         open_beside();

@@ -16,13 +16,14 @@ inline std::string lower_case(std::string_view text)
 }
 
 /// Returns the text without the white space at both ends.
-inline std::string trimmed(std::string_view text)
+inline std::string_view trimmed_view(std::string_view text)
 {
     constexpr std::string_view space = " \t\r\n";
     const std::size_t first = text.find_first_not_of(space);
-    return first == std::string_view::npos ? ""
-                                           : std::string(text.substr(first, text.find_last_not_of(space) + 1 - first));
+    return first == std::string_view::npos ? "" : text.substr(first, text.find_last_not_of(space) + 1 - first);
 }
+
+inline std::string trimmed(std::string_view text) { return std::string(trimmed_view(text)); }
 
 /// Returns the text with each byte below 0x20 (line breaks, tabs) replaced by a space, so that it fits on one line.
 inline std::string one_line(std::string text)

@@ -261,7 +261,7 @@ const std::vector<PoseChecker::NearTile>& PoseChecker::tiles_near(const Bounds& 
 std::optional<CollisionHit> PoseChecker::find(const Pose& pose, bool any_will_do, const ColumnView* column)
 {
     const std::vector<PlacedPart> placed = impl_.place(pose);
-    if (impl_.octree) return impl_.find_in_octree(placed, pose.position);
+    if (impl_.octree) return impl_.find_in_octree(placed, pose.position - impl_.tree->origin());
     Bounds all;
     for (const PlacedPart& part : placed) {
         all.extend(part.bounds.min);

@@ -25,6 +25,7 @@ Map changed_map(const Map& map, ChangedGeometry changed, const std::string& chan
     out.geometry = changed.geometry;
     out.solid_bounds = changed_bounds(map.solid_bounds, out.geometry, map.bounds, changed.boxes);
     out.folder.clear();
+    out.files.reset();
     out.changes.push_back(change);
     out.hash = checksum({map.hash, change, content});
     out.change = std::make_shared<const MapChange>(MapChange{map, std::move(changed.boxes)});

@@ -3,7 +3,6 @@
 #include "base/bytes.h"
 #include "base/checksum.h"
 
-#include <spawnfield/error.h>
 #include <spawnfield/input_file.h>
 
 namespace spawnfield {
@@ -30,11 +29,14 @@ void check_size(const fs::path& folder, const ListedFile& entry)
                                            ": the file was cut short or altered; bake the map again");
 }
 
+FileError altered(const fs::path& file)
+{
+    return {file.string(), "was altered: its checksum differs from the one in map.yaml; bake the map again"};
+}
+
 void check_checksum(const fs::path& folder, const ListedFile& entry)
 {
-    if (entry_of(folder / entry.name).checksum != entry.checksum)
-        throw FileError((folder / entry.name).string(),
-                        "was altered: its checksum differs from the one in map.yaml; bake the map again");
+    if (entry_of(folder / entry.name).checksum != entry.checksum) throw altered(folder / entry.name);
 }
 
 }  // namespace spawnfield

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spawnfield/error.h>
+
 #include <filesystem>
 #include <string>
 
@@ -19,6 +21,9 @@ ListedFile entry_of(const std::filesystem::path& file);
 
 /// Throws FileError if the file is missing, is not a regular file, or has another size than its entry.
 void check_size(const std::filesystem::path& folder, const ListedFile& entry);
+
+/// Returns the error for a file with another checksum than its entry.
+FileError altered(const std::filesystem::path& file);
 
 /// Throws FileError if the file has another checksum than its entry. Reads the whole file.
 void check_checksum(const std::filesystem::path& folder, const ListedFile& entry);

@@ -209,11 +209,17 @@ int version_of(const fs::path& file, const std::string& text)
 
 }  // namespace
 
+int written_version(const Map& map)
+{
+    constexpr int without_occupancy_origin = 7;
+    return map.occupancy_origin.isZero(0) ? without_occupancy_origin : map_format_version;
+}
+
 std::string write_map_yaml(const fs::path& folder, const Map& map, const TerrainMap& terrain,
                            std::pair<double, double> heightmap_range, const std::vector<ListedFile>& written)
 {
     const GridFrame& frame = terrain.frame;
-    std::string text = "format: " + format_prefix + std::to_string(map_format_version) + "\n";
+    std::string text = "format: " + format_prefix + std::to_string(written_version(map)) + "\n";
     text += "name: " + quoted(map.name) + "\n";
     text += program_lines();
     text += "scene: {file: " + quoted(map.scene_file) + ", xxh64: \"" + map.scene_hash + "\"}\n";
@@ -225,6 +231,9 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
                 z_text(map.z_limits) + "\n";
     text += "resolution: " + number(map.resolution) + "\n";
     text += "occupancy_resolution: " + number(map.occupancy_resolution) + "\n";
+    if (const Vec3& at = map.occupancy_origin; !at.isZero(0))
+        text += "# metres: where 0, 0, 0 of occupancy.bt is\noccupancy_origin: " + list_of({at.x(), at.y(), at.z()}) +
+                "\n";
     text += "# of every image: row 0 is the largest y, column 0 the smallest x; x0, y0 is the lower left corner\n";
     text += "frame: {x0: " + number(frame.x0) + ", y0: " + number(frame.y0) + ", cell: " + number(frame.cell) +
             ", rows: " + std::to_string(frame.rows) + ", cols: " + std::to_string(frame.cols) + "}\n";
@@ -266,6 +275,7 @@ MapYaml read_map_yaml(const fs::path& folder)
     out.map.bounds = read_bounds(root);
     out.map.resolution = root.positive("resolution");
     out.map.occupancy_resolution = root.positive("occupancy_resolution");
+    if (root.has("occupancy_origin")) out.map.occupancy_origin = root.vector("occupancy_origin");
     if (root.has("z_limits")) out.map.z_limits = read_z(root, "z_limits");
     if (format > oldest_format) out.map.floors = read_floors(root);
     if (root.has("origin")) out.map.origin = read_origin(root.map("origin"));

@@ -21,24 +21,43 @@
 namespace spawnfield {
 namespace {
 
+constexpr int tower_side = 1 << tower_level;  // voxels
+
+/// Voxels, counted from 0, 0, 0 of the scene.
 struct VoxelBox {
     std::array<int, 3> low, high;  ///< inclusive
+    std::array<int, 3> origin;     ///< the voxel with the key key_offset; a corner of a tower, so its cubes are whole
+
+    int key(int axis, int voxel) const { return voxel - origin[std::size_t(axis)] + key_offset; }
+    int voxel(int axis, int key) const { return key + origin[std::size_t(axis)] - key_offset; }
 };
+
+/// Returns the origin of one axis: 0, or the middle of the voxels if they are too far from 0 for OctoMap.
+int origin_of(double low, double high)
+{
+    if (low >= -key_offset && high < key_offset) return 0;
+    return int(std::floor((low + high) / 2 / tower_side)) * tower_side;
+}
 
 VoxelBox voxels_in(const Bounds& bounds, double resolution)
 {
+    constexpr double most = 2 * key_offset - 2 * tower_side;  // voxels, wherever the origin is
+    constexpr double farthest = 1 << 30;
     VoxelBox box{};
     for (int axis = 0; axis < 3; ++axis) {
         const double low = std::floor(bounds.min[axis] / resolution + 1e-9);
         const double high = std::max(low, std::ceil(bounds.max[axis] / resolution - 1e-9) - 1);
-        if (!(low >= -key_offset && high < key_offset))
-            throw ArgumentError(
-                "build_occupancy", "occupancy resolution", resolution,
-                "at least " +
-                    number(std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis])) / (key_offset - 1)) +
-                    " m here (OctoMap reaches 32768 voxels from the origin)");
+        const double reach = std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis]));
+        if (!(high - low < most))
+            throw ArgumentError("build_occupancy", "occupancy resolution", resolution,
+                                "at least " + number((bounds.max[axis] - bounds.min[axis]) / (most - 1)) +
+                                    " m here (OctoMap has 65536 voxels along each axis)");
+        if (!(low > -farthest && high < farthest))
+            throw ArgumentError("build_occupancy", "occupancy resolution", resolution,
+                                "at least " + number(reach / farthest) + " m so far from the origin");
         box.low[axis] = int(low);
         box.high[axis] = int(high);
+        box.origin[axis] = origin_of(low, high);
     }
     return box;
 }
@@ -137,7 +156,7 @@ Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double re
     Columns centres;
     const bool may_be_filled = !same && geometry.impl().has_filled_meshes;
     if (may_be_filled) centres = Columns(geometry, {block.x0, block.y0, resolution, 0, 0, cols, rows, 0.5});
-    const auto voxel = [](double value) { return int(std::clamp(value, -1e6, 1e6)); };
+    const auto voxel = [](double value) { return int(std::clamp(value, -2e9, 2e9)); };
     struct Run {
         int low, high;  // inclusive
     };
@@ -147,7 +166,7 @@ Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double re
         high = std::min(high, box.high[2]);
         if (low <= high) runs.push_back({low, high});
     };
-    Profiles out(0, box.low[0] + i0 + key_offset, box.low[1] + j0 + key_offset, cols, rows);
+    Profiles out(0, box.key(0, box.low[0] + i0), box.key(1, box.low[1] + j0), cols, rows);
     std::vector<Interval> touching;
     Profile profile;
     for (int j = 0; j < rows; ++j)
@@ -171,12 +190,12 @@ Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double re
             if (runs.size() > 1)
                 std::sort(runs.begin(), runs.end(), [](const Run& l, const Run& r) { return l.low < r.low; });
             profile.clear();
-            append(profile, box.low[2] + key_offset, Content::Unknown);
+            append(profile, box.key(2, box.low[2]), Content::Unknown);
             for (const Run& run : runs) {
-                append(profile, run.low + key_offset, Content::Free);
-                append(profile, run.high + 1 + key_offset, Content::Occupied);
+                append(profile, box.key(2, run.low), Content::Free);
+                append(profile, box.key(2, run.high + 1), Content::Occupied);
             }
-            append(profile, box.high[2] + 1 + key_offset, Content::Free);
+            append(profile, box.key(2, box.high[2] + 1), Content::Free);
             append(profile, 2 * key_offset, Content::Unknown);
             out.add(profile);
         }
@@ -211,12 +230,11 @@ void write_cube(std::span<const Profiles> levels, int x, int y, int z, const Und
 
 Tower build_tower(const Geometry& geometry, const VoxelBox& box, double resolution, int x, int y)
 {
-    constexpr int side = 1 << tower_level;
     // The voxels of the box that lie in a cube: the first one, counted from the box's lowest, and their number.
     const auto part = [&](int axis, int cube) {
-        const int low = std::max(0, cube * side - key_offset - box.low[std::size_t(axis)]);
-        const int end = std::min(box.high[std::size_t(axis)] + 1, (cube + 1) * side - key_offset) -
-                        box.low[std::size_t(axis)];
+        const int first = box.low[std::size_t(axis)], last = box.high[std::size_t(axis)];
+        const int low = std::max(0, box.voxel(axis, cube * tower_side) - first);
+        const int end = std::min(last + 1, box.voxel(axis, (cube + 1) * tower_side)) - first;
         return std::pair{low, end - low};
     };
     const auto [i0, cols] = part(0, x);
@@ -249,9 +267,9 @@ VoxelGrid voxel_grid(const Bounds& bounds, double resolution)
     if (!(resolution > 0) || !std::isfinite(resolution))
         throw ArgumentError("build_occupancy", "resolution", resolution, "> 0 m");
     const VoxelBox box = voxels_in(bounds, resolution);
-    const auto cube_of = [&](int voxel) { return (voxel + key_offset) >> tower_level; };
-    const int x0 = cube_of(box.low[0]), y0 = cube_of(box.low[1]);
-    return {box, {x0, y0, cube_of(box.high[0]) - x0 + 1, cube_of(box.high[1]) - y0 + 1}};
+    const auto cube_of = [&](int axis, int voxel) { return box.key(axis, voxel) >> tower_level; };
+    const int x0 = cube_of(0, box.low[0]), y0 = cube_of(1, box.low[1]);
+    return {box, {x0, y0, cube_of(0, box.high[0]) - x0 + 1, cube_of(1, box.high[1]) - y0 + 1}};
 }
 
 /// Makes those towers for which must_make(tower) is true.
@@ -307,12 +325,20 @@ OccupancyTree::OccupancyTree(std::unique_ptr<Impl> impl) : impl_(std::move(impl)
 OccupancyTree::OccupancyTree(OccupancyTree&&) noexcept = default;
 OccupancyTree::~OccupancyTree() = default;
 
+Vec3 occupancy_origin(const Bounds& bounds, double resolution)
+{
+    const VoxelBox box = voxels_in(bounds, resolution);
+    return Vec3(box.origin[0], box.origin[1], box.origin[2]) * resolution;
+}
+
+const Vec3& OccupancyTree::origin() const { return impl_->origin; }
 double OccupancyTree::resolution() const { return impl_->tree->getResolution(); }
 std::size_t OccupancyTree::leaves() const { return impl_->tree->getNumLeafNodes(); }
 
 OccupancyTree::State OccupancyTree::at(const Vec3& point) const
 {
-    const octomap::OcTreeNode* node = impl_->tree->search(point.x(), point.y(), point.z());
+    const Vec3 local = point - impl_->origin;
+    const octomap::OcTreeNode* node = impl_->tree->search(local.x(), local.y(), local.z());
     if (node == nullptr) return State::Unknown;
     return impl_->tree->isNodeOccupied(node) ? State::Occupied : State::Free;
 }
@@ -333,6 +359,7 @@ OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, do
     tree->readBinaryData(nodes);
     auto impl = std::make_unique<OccupancyTree::Impl>();
     impl->tree = std::move(tree);
+    impl->origin = occupancy_origin(bounds, resolution);
     return OccupancyTree(std::move(impl));
 }
 
@@ -359,10 +386,10 @@ std::size_t write_changed_occupancy(const std::filesystem::path& file, const std
 {
     const VoxelGrid grid = voxel_grid(bounds, resolution);
     std::vector<Tower> towers = read_towers(old_file, grid.towers);
-    const double side = resolution * (1 << tower_level);
+    const double side = resolution * tower_side;
     const auto may_change = [&](int x, int y) {
-        const double low_x = (double(x << tower_level) - key_offset) * resolution - resolution,
-                     low_y = (double(y << tower_level) - key_offset) * resolution - resolution,
+        const double low_x = (grid.box.voxel(0, x << tower_level) - 1) * resolution,
+                     low_y = (grid.box.voxel(1, y << tower_level) - 1) * resolution,
                      high_x = low_x + side + 2 * resolution, high_y = low_y + side + 2 * resolution;
         return std::any_of(boxes.begin(), boxes.end(), [&](const ElementBox& box) {
             return box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y;
@@ -372,10 +399,11 @@ std::size_t write_changed_occupancy(const std::filesystem::path& file, const std
     return write_tree(file, resolution, tree_of(towers, grid.towers));
 }
 
-OccupancyTree read_occupancy(const std::filesystem::path& file)
+OccupancyTree read_occupancy(const std::filesystem::path& file, const Vec3& origin)
 {
     auto impl = std::make_unique<OccupancyTree::Impl>();
     impl->tree = read_octomap(file);
+    impl->origin = origin;
     return OccupancyTree(std::move(impl));
 }
 

@@ -11,7 +11,7 @@
 
 namespace spawnfield {
 
-/// Of all instances of meshes together.
+/// Largest number of triangles, counted once for each instance of a mesh.
 inline constexpr std::uint64_t most_triangles = 100000000;
 
 /// Prepares the import of a file before assimp reads it. assimp does not check its input. So this function refuses

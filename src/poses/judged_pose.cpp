@@ -112,12 +112,12 @@ std::vector<std::pair<std::string, std::string>> junit_properties(const Judge& j
 
 std::string robot_name(const Robot& robot) { return robot.name.empty() ? "robot" : robot.name; }
 
-std::vector<std::string> row_names(const PoseTable& table, const std::string& noun)
+std::vector<std::string> row_names(const PoseTable& table, const std::string& noun, std::size_t first)
 {
     std::vector<std::string> names = column_of(table, "name");
     names.resize(table.poses.size());
     std::map<std::string, int> uses;
-    const auto numbered = [&](std::size_t row) { return noun + " " + std::to_string(row + 1); };
+    const auto numbered = [&](std::size_t row) { return noun + " " + std::to_string(first + row + 1); };
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (names[i].empty()) names[i] = numbered(i);
         ++uses[names[i]];

@@ -37,8 +37,8 @@ std::vector<std::pair<std::string, std::string>> junit_properties(const Judge& j
 std::string robot_name(const Robot& robot);
 
 /// Returns a name for each row of a table: the text in its column `name`, or the noun and the number of the row, from 1
-/// on. If several rows have the same name, " (NOUN N)" is added to it.
-std::vector<std::string> row_names(const PoseTable& table, const std::string& noun);
+/// on. If several rows have the same name, " (NOUN N)" is added to it. `first`: how many rows come before the table.
+std::vector<std::string> row_names(const PoseTable& table, const std::string& noun, std::size_t first = 0);
 
 /// Returns the fields of a row by the names of their columns, without the columns `replaced`.
 Json fields_json(const PoseTable& table, std::size_t row, const std::vector<std::string>& replaced);

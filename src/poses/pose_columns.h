@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace spawnfield {
@@ -34,6 +35,12 @@ inline const std::vector<std::string> repair_columns{"repair",       "repair_dis
 /// index) appends the new fields of a row, with commas between them.
 std::string with_columns(const PoseTable& table, const std::vector<std::string>& names,
                          const std::function<void(std::string&, std::size_t)>& append);
+
+/// The same for one part of a table after the other: only the first part has `header`. Passes the text to `sink` in
+/// pieces. Several threads call append().
+void write_with_columns(const PoseTable& table, const std::vector<std::string>& names, bool header, int threads,
+                        const std::function<void(std::string_view)>& sink,
+                        const std::function<void(std::string&, std::size_t)>& append);
 
 /// Appends numbers with commas between them.
 void append_numbers(std::string& text, std::initializer_list<double> values);

@@ -1,7 +1,7 @@
 #include "base/csv.h"
 #include "base/number.h"
-#include "base/parallel.h"
 #include "base/rotation.h"
+#include "poses/line_texts.h"
 #include "poses/pose_columns.h"
 #include "poses/pose_json.h"
 
@@ -131,64 +131,6 @@ std::string with_spawns(Json out, const SpawnList& list, std::span<const RobotSt
     return finished(std::move(out), &list, robots);
 }
 
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-
-/// Appends the repair of a pose, each field after a comma. Nothing: the pose is valid.
-void append_repair(std::string& text, const std::optional<Repair>& repair)
-{
-    if (!repair) {
-        text.append(repair_columns.size(), ',');
-        return;
-    }
-    if (repair->pose) {
-        const Spawn& to = *repair->pose;
-        text += repair->turn == 0 ? ",moved," : ",turned,";
-        append_numbers(
-            text, {repair->distance, to.position.x(), to.position.y(), to.position.z(), to.roll, to.pitch, to.yaw});
-    } else {
-        text += ",none";
-        text.append(repair_columns.size() - 2, ',');
-    }
-    (text += ',') += std::to_string(repair->tried);
-}
-
-/// Returns the table with the columns that append(text, index) writes, and the repairs if they are given.
-template <class Append>
-std::string table_csv(const PoseTable& table, bool settled, const RepairList* repairs, const Append& append)
-{
-    std::vector<std::string> names = verdict_columns;
-    if (settled) names.insert(names.end(), settled_columns.begin(), settled_columns.end());
-    if (repairs != nullptr) names.insert(names.end(), repair_columns.begin(), repair_columns.end());
-    return with_columns(table, names, [&](std::string& text, std::size_t i) {
-        append(text, i);
-        if (repairs != nullptr) append_repair(text, repairs->repairs[i]);
-    });
-}
-
-/// Appends verdict,ground,height_above,hit.
-void append_verdict(std::string& text, const Judgement& judged, const Map& map, double height_above)
-{
-    text += to_string(judged.verdict);
-    text += ',';
-    if (judged.ground) append_number(text, judged.ground->height);
-    text += ',';
-    if (!std::isnan(height_above)) append_number(text, height_above);
-    text += ',';
-    if (judged.hit) text += csv_quoted(name_of(*judged.hit, map));
-}
-
-/// Returns "x y z PART on GROUND; …".
-std::string contacts_text(const SettledPose& pose, const Map& map, const Robot& robot)
-{
-    std::string text;
-    for (const RestContact& contact : pose.contacts) {
-        if (!text.empty()) text += "; ";
-        for (int axis = 0; axis < 3; ++axis) (text += number(contact.point[axis])) += ' ';
-        text += part_name(robot, contact.part) + " on " + map.geometry.parts()[contact.ground].name;
-    }
-    return text;
-}
-
 void name_all(std::vector<RobotStart>& robots, const std::vector<std::string>& names,
               const std::vector<std::string>& name_spaces)
 {
@@ -222,22 +164,36 @@ std::string free_length_column(const std::optional<HeadingRule>& rule)
     return "";
 }
 
-std::string with_columns(const PoseTable& table, const std::vector<std::string>& names,
-                         const std::function<void(std::string&, std::size_t)>& append)
+void write_with_columns(const PoseTable& table, const std::vector<std::string>& names, bool header, int threads,
+                        const std::function<void(std::string_view)>& sink,
+                        const std::function<void(std::string&, std::size_t)>& append)
 {
     std::vector<std::uint8_t> replaced;
     for (const std::string& name : csv_fields(table.header))
         replaced.push_back(std::find(names.begin(), names.end(), name) != names.end());
-    std::string text;
-    append_fields(text, table.header, replaced);
-    for (std::size_t k = 0; k < names.size(); ++k) text += (k > 0 ? "," : "") + names[k];
-    text += '\n';
-    for (std::size_t i = 0; i < table.poses.size(); ++i) {
-        append_fields(text, table.rows[i], replaced);
-        append(text, i);
-        text += '\n';
+    if (header) {
+        std::string text;
+        append_fields(text, table.header, replaced);
+        for (std::size_t k = 0; k < names.size(); ++k) text += (k > 0 ? "," : "") + names[k];
+        sink(text + '\n');
     }
-    return text;
+    std::vector<std::string> texts;
+    write_lines(table.poses.size(), threads, sink, texts, [&](std::string& text, std::size_t first, std::size_t end) {
+        for (std::size_t i = first; i < end; ++i) {
+            append_fields(text, table.rows[i], replaced);
+            append(text, i);
+            text += '\n';
+        }
+    });
+}
+
+std::string with_columns(const PoseTable& table, const std::vector<std::string>& names,
+                         const std::function<void(std::string&, std::size_t)>& append)
+{
+    std::string out;
+    write_with_columns(
+        table, names, true, 1, [&](std::string_view text) { out += text; }, append);
+    return out;
 }
 
 std::vector<Spawn> spawns_of(const PoseTable& table)
@@ -276,38 +232,6 @@ std::vector<std::string> replaced_columns(const PoseTable& table, bool settled, 
     std::vector<std::string> names = csv_fields(table.header);
     std::erase_if(names, [&](const std::string& name) { return !is_verdict_column(name, settled, repairs); });
     return names;
-}
-
-std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const Map& map,
-                         const RepairList* repairs)
-{
-    const auto append = [&](std::string& text, std::size_t i) {
-        const Judgement& judged = judgements[i];
-        append_verdict(text, judged, map,
-                       judged.ground ? table.poses[i].position.z() - judged.ground->height : no_number);
-    };
-    return table_csv(table, false, repairs, append);
-}
-
-std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses, const Judge& judge,
-                        const RepairList* repairs)
-{
-    const auto append = [&](std::string& text, std::size_t i) {
-        const SettledPose& pose = poses[i];
-        append_verdict(text, judgement_of(pose), judge.map(),
-                       pose.has_pose ? pose.position.z() - pose.ground->height : no_number);
-        text += ',';
-        if (pose.has_pose) {
-            append_numbers(text, {pose.position.z(), pose.roll, pose.pitch, pose.tilt, pose.margin});
-            text += ',' + csv_quoted(contacts_text(pose, judge.map(), judge.robot())) + ',';
-            append_numbers(text, {pose.tip_over, pose.belly});
-        } else {
-            text.append(settled_columns.size() - 2, ',');  // all but `reason` are empty
-        }
-        text += ',';
-        if (pose.verdict != Verdict::Valid) text += csv_quoted(judge.describe(pose));
-    };
-    return table_csv(table, true, repairs, append);
 }
 
 std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names,

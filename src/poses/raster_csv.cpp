@@ -1,5 +1,5 @@
 #include "base/number.h"
-#include "base/parallel.h"
+#include "poses/line_texts.h"
 #include "poses/pose_columns.h"
 
 #include <spawnfield/error.h>
@@ -12,8 +12,6 @@
 
 namespace spawnfield {
 namespace {
-
-constexpr std::size_t text_lines = 1 << 12, batch_lines = 1 << 16;  // lines of a text, and of a loop of several threads
 
 /// Appends the tilt and what follows it in the lines of a settled raster.
 void append_rest(std::string& text, const RasterRest& rest, const std::optional<HeadingRule>& rule)
@@ -86,19 +84,6 @@ private:
     std::string text_;
 };
 
-/// Passes the texts of `count` lines to `sink`. append(text, first, end) appends lines, for several threads.
-template <class Append>
-void write_lines(std::size_t count, int threads, const std::function<void(std::string_view)>& sink,
-                 std::vector<std::string>& texts, const Append& append)
-{
-    texts.resize((count + text_lines - 1) / text_lines);
-    parallel_for(texts.size(), threads, {}, [&](std::size_t i) {
-        texts[i].clear();
-        append(texts[i], i * text_lines, std::min(count, (i + 1) * text_lines));
-    });
-    for (const std::string& text : texts) sink(text);
-}
-
 }  // namespace
 
 void write_raster_csv(const RasterResult& raster, bool aerial, const std::function<void(std::string_view)>& sink,
@@ -121,7 +106,7 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
         written += poses.size();
         poses.clear();
     };
-    sink(lines.header() + "\n");
+    if (raster.grid.first_row == 0) sink(lines.header() + "\n");
     for_each_pose(raster, aerial, [&](const RasterPose& pose) {
         poses.push_back(pose);
         if (poses.size() == batch_lines) write();
@@ -136,21 +121,18 @@ void write_raster_cells_csv(const RasterResult& raster, const std::vector<Raster
     const RasterGrid& grid = raster.grid;
     sink(lines.header() + ",size,x_low,y_low,z_low,z_high\n");
     std::vector<std::string> texts;
-    for (std::size_t from = 0; from < cells.size(); from += batch_lines)
-        write_lines(std::min(batch_lines, cells.size() - from), threads, sink, texts,
-                    [&](std::string& text, std::size_t first, std::size_t end) {
-                        YText y;
-                        for (std::size_t i = from + first; i < from + end; ++i) {
-                            const RasterCell& cell = cells[i];
-                            const RasterPose& pose = raster.poses[cell.pose];
-                            lines.append(text, pose, lines.is_settled() ? &raster.rests[cell.pose] : nullptr,
-                                         y.of(pose.y));
-                            text += ',';
-                            append_numbers(text, {cell.side * grid.step, grid.x_of(cell.col) - grid.step / 2,
-                                                  grid.y_of(cell.row) - grid.step / 2, cell.low, cell.high});
-                            text += '\n';
-                        }
-                    });
+    write_lines(cells.size(), threads, sink, texts, [&](std::string& text, std::size_t first, std::size_t end) {
+        YText y;
+        for (std::size_t i = first; i < end; ++i) {
+            const RasterCell& cell = cells[i];
+            const RasterPose& pose = raster.poses[cell.pose];
+            lines.append(text, pose, lines.is_settled() ? &raster.rests[cell.pose] : nullptr, y.of(pose.y));
+            text += ',';
+            append_numbers(text, {cell.side * grid.step, grid.x_of(cell.col) - grid.step / 2,
+                                  grid.y_of(cell.row) - grid.step / 2, cell.low, cell.high});
+            text += '\n';
+        }
+    });
 }
 
 }  // namespace spawnfield

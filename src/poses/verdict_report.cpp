@@ -60,7 +60,7 @@ Json verdict_json(const VerdictReport& report, std::size_t index, const std::str
                   const std::vector<std::string>& replaced)
 {
     const Pose& pose = report.table.poses[index];
-    Json out = {{"row", index + 1}};
+    Json out = {{"row", report.first + index + 1}};
     out.update(pose_json({name, {}, pose.position, rpy_from(pose.rotation)}));
     add_verdict(out, judged_pose(report, index));
     if (report.repairs != nullptr) out["repair"] = repair_json(report.repairs->repairs[index]);
@@ -71,8 +71,8 @@ Json verdict_json(const VerdictReport& report, std::size_t index, const std::str
 /// Returns the text of a test case of JUnit that fails.
 std::string failure_details(const VerdictReport& report, std::size_t index)
 {
-    std::string text = "row " + std::to_string(index + 1) + ": " + xml_text(report.table.rows[index]) + "\n" +
-                       verdict_lines(judged_pose(report, index));
+    std::string text = "row " + std::to_string(report.first + index + 1) + ": " + xml_text(report.table.rows[index]) +
+                       "\n" + verdict_lines(judged_pose(report, index));
     if (report.repairs != nullptr && report.repairs->repairs[index])
         text += repair_words(*report.repairs->repairs[index], report.repairs->options) + "\n";
     return text;
@@ -80,7 +80,10 @@ std::string failure_details(const VerdictReport& report, std::size_t index)
 
 }  // namespace
 
-std::vector<std::string> pose_names(const PoseTable& table) { return row_names(table, "pose"); }
+std::vector<std::string> pose_names(const PoseTable& table, std::size_t first)
+{
+    return row_names(table, "pose", first);
+}
 
 std::string reason(const VerdictReport& report, std::size_t index) { return reason_of(judged_pose(report, index)); }
 
@@ -106,7 +109,7 @@ void write_verdicts_json(const VerdictReport& report, const TextSink& sink)
 
 void write_verdicts_junit(const VerdictReport& report, const TextSink& sink)
 {
-    const std::vector<std::string> names = pose_names(report.table);
+    const std::vector<std::string> names = pose_names(report.table, report.first);
     const auto test_case = [&](std::size_t i) -> JunitCase {
         const Verdict verdict = report.judgements[i].verdict;
         if (verdict == Verdict::Valid) return {.name = names[i]};

@@ -425,56 +425,122 @@ int RasterGrid::step_above(double height) const
     return k;
 }
 
+namespace {
+
+/// Returns the progress of a part of some work, for the rows of the whole.
+Progress part_of(const Progress& whole, int first, int count, int all)
+{
+    if (!whole) return {};
+    return [=](double share) { whole((first + share * count) / all); };
+}
+
+/// Makes rasters of one judge and one set of options.
+class RasterMaker {
+public:
+    RasterMaker(const Judge& judge, const RasterOptions& options, int headings)
+        : options_(options), empty_(empty_result(judge, options)),
+          strips_(judge.impl(), options_, empty_.grid, empty_.offset, top_, headings)
+    {
+        // Rows share no work without the height check, and each row takes long.
+        if (!options.height_check) most_rows_ = 1;
+        if (options.stance == Stance::Settled)
+            most_rows_ = RasterJudge::settled_block(judge.impl().settler(), empty_.grid.step);
+        judge.map().geometry.impl().expect_all();
+    }
+
+    /// Returns the result without poses.
+    const RasterResult& empty() const { return empty_; }
+
+    /// Returns the result of these rows. `tallies`, if given, gets those of the poses.
+    RasterResult rows(int first, int count, const Progress& progress, std::vector<VerdictTally>* tallies) const
+    {
+        RasterResult out = empty_;
+        out.grid.first_row = first;
+        out.grid.rows = count;
+        const int strip = std::clamp(count / (4 * thread_count(options_.threads)), 1, most_rows_);
+        int taken = 0;  // rows
+        parallel_in_order<std::vector<Row>>(
+            std::size_t((count + strip - 1) / strip), options_.threads, progress,
+            [&](std::size_t s, std::vector<Row>& made) {
+                const int begin = int(s) * strip;
+                made.resize(std::size_t(std::min(strip, count - begin)));
+                strips_.judge_rows(first + begin, made);
+            },
+            [&](std::vector<Row>& made) {
+                taken += int(made.size());
+                reserve_poses(out.poses, made, double(taken) / count, double(count) * out.grid.cols);
+                for (Row& row : made) take(row, out, tallies);
+            });
+        return out;
+    }
+
+private:
+    static void take(Row& row, RasterResult& out, std::vector<VerdictTally>* tallies)
+    {
+        for (const RasterPose& pose : row.poses) ++out.counts[pose.verdict];
+        out.counts[Verdict::Aerial] += row.aerial;
+        out.exact_checks += row.exact_checks;
+        out.poses.insert(out.poses.end(), row.poses.begin(), row.poses.end());
+        out.rests.insert(out.rests.end(), row.rests.begin(), row.rests.end());
+        if (tallies != nullptr) tallies->insert(tallies->end(), row.tallies.begin(), row.tallies.end());
+        row.clear();
+    }
+
+    RasterResult empty_result(const Judge& judge, const RasterOptions& options)
+    {
+        check(options);
+        if (options.stance == Stance::Settled) judge.impl().settler();  // throws if the obstacles are voxels
+        const Map& map = judge.map();
+        RasterResult out;
+        out.dims = options.dims;
+        out.stance = options.stance;
+        out.yaw = options.yaw;
+        out.heading = options.heading;
+        out.offset = chosen_offset(judge, options);
+        out.area = options.area;
+        if (options.dims == 2) out.z = overlap(map.z_limits, options.z);
+        const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
+        out.grid = raster_grid(bounds, options);
+        top_ = bounds.max.z();
+        return out;
+    }
+
+    const RasterOptions options_;
+    double top_ = 0;  ///< of the raster's bounds, m
+    const RasterResult empty_;
+    const RasterJudge strips_;
+    int most_rows_ = RasterJudge::most_rows;
+};
+
+}  // namespace
+
+RasterResult raster_with(const Judge& judge, const RasterOptions& options, int headings,
+                         std::vector<VerdictTally>* tallies)
+{
+    const RasterMaker maker(judge, options, headings);
+    return maker.rows(0, maker.empty().grid.rows, options.progress, tallies);
+}
+
 RasterResult raster(const Judge& judge, const RasterOptions& options)
 {
     return raster_with(judge, options, 0, nullptr);
 }
 
-RasterResult raster_with(const Judge& judge, const RasterOptions& options, int headings,
-                         std::vector<VerdictTally>* tallies)
+RasterResult raster_in_parts(const Judge& judge, const RasterOptions& options,
+                             const std::function<void(const RasterResult& part)>& take, std::int64_t poses)
 {
-    check(options);
-    if (options.stance == Stance::Settled) judge.impl().settler();  // throws if the obstacles are voxels
-    const Map& map = judge.map();
-    RasterResult out;
-    out.dims = options.dims;
-    out.stance = options.stance;
-    out.yaw = options.yaw;
-    out.heading = options.heading;
-    out.offset = chosen_offset(judge, options);
-    out.area = options.area;
-    if (options.dims == 2) out.z = overlap(map.z_limits, options.z);
-    const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
-    out.grid = raster_grid(bounds, options);
-    const RasterJudge strips(judge.impl(), options, out.grid, out.offset, bounds.max.z(), headings);
-    map.geometry.impl().expect_all();
-    const auto rows = std::size_t(out.grid.rows);
-    // Rows share no work without the height check, and each row takes long.
-    std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;
-    if (options.stance == Stance::Settled)
-        most_rows = std::size_t(RasterJudge::settled_block(judge.impl().settler(), out.grid.step));
-    const std::size_t strip = std::clamp<std::size_t>(rows / std::size_t(4 * thread_count(options.threads)), 1,
-                                                      most_rows);
-    std::size_t rows_taken = 0;
-    parallel_in_order<std::vector<Row>>(
-        (rows + strip - 1) / strip, options.threads, options.progress,
-        [&](std::size_t s, std::vector<Row>& made) {
-            made.resize(std::min(strip, rows - s * strip));
-            strips.judge_rows(int(s * strip), made);
-        },
-        [&](std::vector<Row>& made) {
-            rows_taken += made.size();
-            reserve_poses(out.poses, made, double(rows_taken) / double(rows), double(rows) * out.grid.cols);
-            for (Row& row : made) {
-                for (const RasterPose& pose : row.poses) ++out.counts[pose.verdict];
-                out.counts[Verdict::Aerial] += row.aerial;
-                out.exact_checks += row.exact_checks;
-                out.poses.insert(out.poses.end(), row.poses.begin(), row.poses.end());
-                out.rests.insert(out.rests.end(), row.rests.begin(), row.rests.end());
-                if (tallies != nullptr) tallies->insert(tallies->end(), row.tallies.begin(), row.tallies.end());
-                row.clear();
-            }
-        });
+    const RasterMaker maker(judge, options, 0);
+    RasterResult out = maker.empty();
+    const RasterGrid& grid = out.grid;
+    const std::int64_t in_row = std::int64_t(grid.cols) * std::max(grid.heights, 1);
+    const int rows = int(std::clamp<std::int64_t>(poses / in_row, 1, grid.rows));
+    for (int first = 0; first < grid.rows; first += rows) {
+        const int count = std::min(rows, grid.rows - first);
+        const RasterResult part = maker.rows(first, count, part_of(options.progress, first, count, grid.rows), nullptr);
+        for (const Verdict verdict : all_verdicts) out.counts[verdict] += part.counts[verdict];
+        out.exact_checks += part.exact_checks;
+        take(part);
+    }
     return out;
 }
 

@@ -8,6 +8,7 @@
 #include "scene/nav2_map.h"
 #include "scene/plausibility.h"
 #include "scene/scene_yaml.h"
+#include "scene/stray_parts.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/input_file.h>
@@ -79,6 +80,15 @@ void check_extent(const Scene& scene, const std::string& file)
     }
 }
 
+/// Adds a notice about parts far away from all others. `strict`: throws FileError.
+void check_stray_parts(Scene& scene, const std::string& file, bool strict)
+{
+    const std::vector<StrayPart> stray = stray_parts(scene);
+    if (stray.empty()) return;
+    if (strict) throw FileError(file, words_for(stray) + "; --strict does not allow this");
+    scene.notices.push_back(file + ": " + words_for(stray));
+}
+
 }  // namespace
 
 fs::path scene_file_of(const fs::path& scene) { return model_file_of(scene); }
@@ -125,6 +135,7 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
                                            std::string(gazebo ? ", missing or without collision" : "") +
                                            first_reasons(scene));
     check_extent(scene, file.string());
+    check_stray_parts(scene, file.string(), options.strict);
     const Remedies remedies = yaml     ? Remedies{"scale of its part:", "up of its part"}
                               : gazebo ? Remedies{"<scale> of its mesh:",
                                                   "Gazebo uses the axes of the mesh file, so the <pose> of its model"}

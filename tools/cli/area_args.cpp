@@ -25,7 +25,8 @@ Region read_one(const CommonArgs& common, const std::string& option, const std::
         out.name = text;
         return out;
     }
-    Region out = is_standard(text) ? parse_region(read_standard_input(), input_name(text)) : read_region(text, cells);
+    Region out = is_standard(text) ? parse_region(read_standard_input(common), input_name(text))
+                                   : read_region(text, cells);
     for (const std::string& words : out.notices) notice(common, words);
     return out;
 }

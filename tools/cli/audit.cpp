@@ -74,7 +74,8 @@ void open_world(const AuditArgs& args, const CLI::App& command, Summary& summary
         summary.map_hash = report.map.hash;
         return;
     }
-    BakeOptions baking{.threads = args.threads, .progress = progress_bar(args, "bake")};
+    BakeOptions baking{
+        .max_memory = memory_limit(args), .threads = args.threads, .progress = progress_bar(args, "bake")};
     if (command.count("--resolution") > 0) baking.resolution = parse_positive("--resolution", args.resolution);
     if (!args.z.empty() && !args.bounds.empty())
         throw ArgumentError("--z and --bounds both limit heights; give one of them");
@@ -103,7 +104,7 @@ std::vector<NamedPose> named_poses(const AuditArgs& args)
     std::vector<NamedPose> out;
     if (args.poses.empty()) return out;
     const PoseTable table = open_poses(args, args.poses);
-    notice_about_tilted(args, args.poses, table);
+    notice_about_tilted(args, args.poses, count_tilted(table));
     const std::vector<std::string> names = pose_names(table);
     for (std::size_t i = 0; i < names.size(); ++i) out.push_back({names[i], table.poses[i]});
     return out;

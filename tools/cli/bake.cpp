@@ -41,6 +41,7 @@ Ending run_bake(const BakeArgs& args, const CLI::App& command, Summary& summary)
         throw ArgumentError("--z and --bounds both limit heights; give one of them");
     if (!args.z.empty()) options.z = parse_z("--z", args.z);
     options.allow_no_terrain = args.allow_no_terrain;
+    options.max_memory = memory_limit(args);
     options.threads = args.threads;
     options.progress = progress_bar(args, "bake");
 

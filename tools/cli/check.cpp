@@ -51,10 +51,8 @@ void write_results(const CheckArgs& args, const VerdictReport& report)
             write_verdicts_json(report, sink);
         else if (args.format == "junit")
             write_verdicts_junit(report, sink);
-        else if (report.settled != nullptr)
-            sink(settled_csv(report.table, *report.settled, report.judge, report.repairs));
         else
-            sink(verdicts_csv(report.table, report.judgements, report.judge.map(), report.repairs));
+            write_verdicts_csv(report, sink, args.threads);
     };
     write_output(args, args.out, write_verdicts, [&] {
         if (args.repaired.empty()) return;
@@ -73,15 +71,15 @@ void notice_about_columns(const CheckArgs& args, const PoseTable& table)
                input_name(args.poses) + ": new columns replace the old ones: " + CLI::detail::join(replaced, ", "));
 }
 
-/// The verdicts on all poses.
+/// The verdicts on the poses of a table.
 struct Checked {
     std::vector<SettledPose> settled;  ///< empty for poses as given
     std::vector<Judgement> judgements;
 };
 
-Checked check_poses(const CheckArgs& args, const Judge& judge, const PoseTable& table)
+Checked check_poses(const CheckArgs& args, const Judge& judge, const PoseTable& table, const Progress& progress)
 {
-    const RunOptions run{.threads = args.threads, .progress = progress_bar(args, "check")};
+    const RunOptions run{.threads = args.threads, .progress = progress};
     Checked out;
     if (!args.is_settled()) {
         out.judgements = judge.check(table.poses, run);
@@ -92,22 +90,73 @@ Checked check_poses(const CheckArgs& args, const Judge& judge, const PoseTable& 
     return out;
 }
 
-/// Puts the verdicts and the repairs, if there are any, into the summary.
-void summarize(const Checked& checked, const RepairList* repairs, Summary& summary)
+VerdictReport report_of(const CheckArgs& args, const PoseTable& table, const Checked& checked, const Judge& judge)
 {
+    return {table, checked.judgements, judge, args.is_settled() ? &checked.settled : nullptr};
+}
+
+/// What is counted of all poses.
+struct Totals {
     VerdictCounts counts;
-    std::uint64_t exact_checks = 0;
-    for (const Judgement& judged : checked.judgements) {
-        ++counts[judged.verdict];
-        exact_checks += judged.exact_check;
+    std::uint64_t exact_checks = 0, tilted = 0;
+    NotValid not_valid;
+
+    void add(const VerdictReport& report)
+    {
+        for (const Judgement& judged : report.judgements) {
+            ++counts[judged.verdict];
+            exact_checks += judged.exact_check;
+        }
+        tilted += count_tilted(report.table);
+        not_valid.add(report);
     }
-    if (repairs != nullptr) {
-        for (const std::optional<Repair>& repair : repairs->repairs) exact_checks += repair ? repair->exact_checks : 0;
-        summary.repairs = {repairs->repaired, repairs->turned, repairs->unrepaired};
-        summary.extra.push_back(std::to_string(repairs->repaired) + " repaired (" + std::to_string(repairs->turned) +
-                                " turned), " + std::to_string(repairs->unrepaired) + " without a repair");
-    }
-    summary.set_verdicts(counts, exact_checks);
+};
+
+/// Returns the progress of a part of the file; its shares before and after are NaN if the size is not known.
+Progress progress_of_part(const CheckArgs& args, const Progress& whole, double from, double to)
+{
+    return [=, &args](double share) {
+        if (std::isnan(to))
+            stop_if_interrupted(args);
+        else
+            whole(from + share * (to - from));
+    };
+}
+
+/// Checks the poses part by part, the first of which is `table`, and writes CSV.
+void check_in_parts(const CheckArgs& args, const Judge& judge, PoseParts& parts, PoseTable table, Totals& totals,
+                    Summary& summary)
+{
+    const Progress progress = progress_bar(args, "check");
+    write_output(args, args.out, [&](const auto& sink) {
+        double done = 0;
+        for (;;) {
+            const double share = parts.share();
+            const Checked checked = check_poses(args, judge, table, progress_of_part(args, progress, done, share));
+            VerdictReport report = report_of(args, table, checked, judge);
+            report.first = totals.counts.total();
+            summary.lap("query");
+            write_verdicts_csv(report, sink, args.threads);
+            summary.lap("write");
+            totals.add(report);
+            if (!parts.has_next()) break;
+            table = parts.next();
+            summary.lap("load");
+            done = share;
+        }
+    });
+}
+
+/// Returns the repairs of the poses that are not valid, and puts them into the summary.
+RepairList repair(const Judge& judge, const PoseTable& table, const Checked& checked, const RepairOptions& options,
+                  Totals& totals, Summary& summary)
+{
+    RepairList out = repair_poses(judge, table.poses, checked.judgements, options);
+    for (const std::optional<Repair>& repair : out.repairs) totals.exact_checks += repair ? repair->exact_checks : 0;
+    summary.repairs = {out.repaired, out.turned, out.unrepaired};
+    summary.extra.push_back(std::to_string(out.repaired) + " repaired (" + std::to_string(out.turned) + " turned), " +
+                            std::to_string(out.unrepaired) + " without a repair");
+    return out;
 }
 
 /// Returns what "no repair" means, if there are such poses; otherwise "".
@@ -133,35 +182,50 @@ Ending run_pairs_of_check(CheckArgs args, const CLI::App& command, Summary& summ
     return run_check_pairs(args, args.pairs, command, {args.out, args.format, args.require_valid}, summary);
 }
 
+/// Checks all poses at once, and returns a notice for the end, or "".
+std::string check_at_once(const CheckArgs& args, const Judge& judge, const std::optional<RepairOptions>& options,
+                          PoseTable table, Totals& totals, Summary& summary)
+{
+    Checked checked = check_poses(args, judge, table, progress_bar(args, "check"));
+    std::optional<RepairList> repairs;
+    if (options) repairs = repair(judge, table, checked, *options, totals, summary);
+    VerdictReport report = report_of(args, table, checked, judge);
+    report.repairs = repairs ? &*repairs : nullptr;
+    totals.add(report);
+    summary.lap("query");
+    write_results(args, report);
+    const std::string words = repairs ? unrepaired_words(args, *repairs) : "";
+    keep(args, FoundVerdicts{std::move(table), std::move(checked.judgements), std::move(checked.settled),
+                             std::move(repairs), judge});
+    return words;
+}
+
 Ending run_check(const CheckArgs& args, const CLI::App& command, Summary& summary)
 {
     if (command.count("--pairs") > 0) return run_pairs_of_check(args, command, summary);
     if (command.count("--poses") == 0) throw ArgumentError("--poses is required, or --pairs");
     refuse_check_pairs_options(command);
-    const std::optional<RepairOptions> repair = repair_options(args, command);
-    PoseTable table = open_poses(args, args.poses);
+    const std::optional<RepairOptions> options = repair_options(args, command);
+    const bool in_parts = args.format == "csv" && !options && !args.host->wants_values();
+    constexpr std::size_t poses_of_part = 1 << 16;
+    PoseParts parts(args, args.poses, in_parts ? poses_of_part : PoseStream::all);
+    PoseTable table = parts.next();
     notice_about_columns(args, table);
-    if (args.is_settled()) notice_about_tilted(args, args.poses, table);
     const Session session = open_session(args, summary);
     notices_about_stance(args, command, session.robot);
     summary.lap("load");
-    Checked checked = check_poses(args, *session.judge, table);
-    std::optional<RepairList> repairs;
-    if (repair) repairs = repair_poses(*session.judge, table.poses, checked.judgements, *repair);
-    summary.lap("query");
-    summarize(checked, repairs ? &*repairs : nullptr, summary);
-    const VerdictReport report{table, checked.judgements, *session.judge,
-                               args.is_settled() ? &checked.settled : nullptr, repairs ? &*repairs : nullptr};
-    write_results(args, report);
-    Ending ending{.notice = repairs ? unrepaired_words(args, *repairs) : ""};
-    bool is_refused = false;
-    for (std::size_t i = 0; i < table.poses.size() && args.require_valid; ++i) is_refused |= remains_invalid(report, i);
-    if (is_refused) {
+    Totals totals;
+    Ending ending;
+    if (in_parts)
+        check_in_parts(args, *session.judge, parts, std::move(table), totals, summary);
+    else
+        ending.notice = check_at_once(args, *session.judge, options, std::move(table), totals, summary);
+    if (args.is_settled()) notice_about_tilted(args, args.poses, totals.tilted);
+    summary.set_verdicts(totals.counts, totals.exact_checks);
+    if (args.require_valid && !totals.not_valid.is_empty()) {
         ending.status = not_valid;
-        ending.complaint = "--require-valid: " + not_valid_words(report);
+        ending.complaint = "--require-valid: " + totals.not_valid.words();
     }
-    keep(args, FoundVerdicts{std::move(table), std::move(checked.judgements), std::move(checked.settled),
-                             std::move(repairs), *session.judge});
     return ending;
 }
 

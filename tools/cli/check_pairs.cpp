@@ -61,7 +61,7 @@ void write_report(const CommonArgs& args, const std::string& out, const std::str
 
 PairTable open_pairs(const CommonArgs& common, const std::string& file)
 {
-    const std::string text = is_standard(file) ? read_standard_input() : read_file(file);
+    const std::string text = is_standard(file) ? read_standard_input(common) : read_file(file);
     PairTable out = parse_pairs(text, input_name(file), common.allow_empty);
     for (const PoseTable* table : {&out.starts, &out.goals})
         for (const std::string& what : table->notices) notice(common, what);

@@ -1,12 +1,21 @@
 #include "common_args.h"
 
 #include "messages.h"
+#include "numbers.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/memory.h>
 
 namespace spawnfield::cli {
 
 void start_group(CLI::App& command, const std::string& name) { command.option_defaults()->group(name); }
+
+double memory_limit(const CommonArgs& args)
+{
+    constexpr double default_share = 0.8;
+    static const double available = available_memory();  // before this process takes any
+    return args.max_memory.empty() ? default_share * available : parse_size("--max-memory", args.max_memory);
+}
 
 void add_common(CLI::App& command, CommonArgs& args)
 {
@@ -15,6 +24,11 @@ void add_common(CLI::App& command, CommonArgs& args)
         ->check(CLI::Range(0, most_threads));
     command.add_flag("--quiet,-q", args.quiet, "Print no notices, no progress and no summary line");
     command.add_option("--summary", args.summary, "JSON file to which the summary is written (- for standard output)");
+    command
+        .add_option("--max-memory", args.max_memory,
+                    "Limit of the program's memory: 8GB, 500MB (default: 80 % of what is available here, also in a "
+                    "container). What needs more ends with status 1")
+        ->check(not_empty());
 }
 
 void add_trusted(CLI::App& command, CommonArgs& args)

@@ -18,6 +18,7 @@ struct CommonArgs {
     int threads = 0;
     bool quiet = false;
     std::string summary;
+    std::string max_memory;            ///< 8GB; empty: 80 % of what is available
     bool trusted = false;              ///< read scenes and robots in this process; set by --trusted
     std::vector<std::string> confine;  ///< folders to which --confine restricts files; empty: none
     bool allow_empty = false;          ///< files of poses may contain no pose; set by --allow-empty
@@ -34,7 +35,10 @@ inline const std::string ground = "Poses and ground", rest = "Robot at rest", re
 /// All options that are added after this call appear below this heading of --help.
 void start_group(CLI::App& command, const std::string& name);
 
-/// Adds --threads, --quiet and --summary.
+/// Returns the limit of memory, in bytes. Throws ArgumentError.
+double memory_limit(const CommonArgs& args);
+
+/// Adds --threads, --quiet, --summary and --max-memory.
 void add_common(CLI::App& command, CommonArgs& args);
 
 /// Adds --trusted and --confine, for commands that read scenes or robots.

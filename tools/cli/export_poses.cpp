@@ -5,8 +5,6 @@
 
 #include <spawnfield/error.h>
 
-#include <algorithm>
-
 namespace spawnfield::cli {
 namespace {
 
@@ -17,10 +15,11 @@ void let_down(const ExportJob& job, PoseTable& table)
     std::vector<Judgement> judgements;
     for (const SettledPose& pose : settled) judgements.push_back(judgement_of(pose));
     const VerdictReport report{table, judgements, *job.session.judge, &settled};
-    if (std::any_of(judgements.begin(), judgements.end(),
-                    [](const Judgement& judgement) { return judgement.verdict != Verdict::Valid; }))
+    NotValid not_valid;
+    not_valid.add(report);
+    if (!not_valid.is_empty())
         throw FileError(input_name(job.args.poses),
-                        "with --settle, " + not_valid_words(report) +
+                        "with --settle, " + not_valid.words() +
                             "\nLeave these out; `check --settle` has the verdict of each pose. Without --settle, poses "
                             "are written as they are given");
     for (std::size_t i = 0; i < settled.size(); ++i) table.poses[i] = settled[i].lifted(job.args.lift);
@@ -71,7 +70,7 @@ bool lets_down_poses(const ExportJob& job)
 
 std::vector<SettledPose> settled_poses(const ExportJob& job, const PoseTable& table)
 {
-    notice_about_tilted(job.args, job.args.poses, table);
+    notice_about_tilted(job.args, job.args.poses, count_tilted(table));
     notices_about_stance(job.args, job.command, job.session.robot);
     return job.session.judge->settle(table.poses,
                                      {.threads = job.args.threads, .progress = progress_bar(job.args, "export")});

@@ -190,6 +190,7 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     crop_to_ground(args, session.map, terrain, options);
     options.step = command.count("--step") > 0 ? parse_positive("--step", args.step)
                                                : default_step(session.map, options);
+    require_raster_memory(args, session.map, options);
     summary.lap("load");
     const IslandChoice islands = choice_for(session.map, args, args.islands, command, asked_islands,
                                             shows_islands || shows_room);

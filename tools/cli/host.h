@@ -35,6 +35,8 @@ public:
 
     /// Returns whether results that go to standard output are wanted as text.
     virtual bool wants_text() const = 0;
+    /// Returns whether commands must leave what they find in `result`, for which they hold all of it in memory.
+    virtual bool wants_values() const = 0;
     /// Writes to standard output. Throws OutputError.
     virtual void write(std::string_view text) = 0;
     virtual void flush() = 0;

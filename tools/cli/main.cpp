@@ -5,6 +5,8 @@
 #include "terminal.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
+#include <spawnfield/memory.h>
 
 #include <tbb/global_control.h>
 
@@ -19,6 +21,18 @@ namespace {
 using namespace spawnfield;
 using namespace spawnfield::cli;
 
+std::string out_of_memory(const CommonArgs& args)
+{
+    return "needs more memory than the limit of " + memory_text(memory_limit(args)) +
+           " (--max-memory); a coarser --resolution or --step, or smaller --bounds, needs less";
+}
+
+/// Some libraries turn std::bad_alloc into a text of their own, for example OpenCV.
+bool is_about_memory(const std::string& text)
+{
+    return text.find("bad_alloc") != std::string::npos || text.find("Failed to allocate") != std::string::npos;
+}
+
 int run_guarded(const CLI::App& app, const ChosenCommand& chosen)
 {
     const auto failed = [&](int status, const std::string& message) {
@@ -30,6 +44,7 @@ int run_guarded(const CLI::App& app, const ChosenCommand& chosen)
             check_streams(*command);
             check_overwriting(*command);
         }
+        limit_memory(memory_limit(*chosen.args));
         return run_command(chosen);
     } catch (const Interrupted&) {
         return failed(interrupted, "interrupted; nothing was written");
@@ -40,11 +55,11 @@ int run_guarded(const CLI::App& app, const ChosenCommand& chosen)
     } catch (const FileError& error) {
         return failed(input_refused, error.what());
     } catch (const std::bad_alloc&) {
-        return failed(failure, "out of memory; a coarser --resolution or --step, or smaller --bounds, needs less");
-    } catch (const std::filesystem::filesystem_error& error) {  // a loop of links, a folder without permission
-        return failed(input_refused, error.path1().string() + ": cannot be reached: " + error.code().message());
+        return failed(failure, out_of_memory(*chosen.args));
+    } catch (const std::filesystem::filesystem_error& error) {
+        return failed(input_refused, unreachable_file(error).what());
     } catch (const std::exception& error) {
-        return failed(failure, error.what());
+        return failed(failure, is_about_memory(error.what()) ? out_of_memory(*chosen.args) : error.what());
     }
 }
 

@@ -1,7 +1,12 @@
 #include "numbers.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <utility>
 
 namespace spawnfield::cli {
 
@@ -44,6 +49,31 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
         start = between + 1;
     }
     return out;
+}
+
+double parse_size(const std::string& option, const std::string& text)
+{
+    const std::size_t end = std::min(text.find_first_not_of("0123456789.+-eE"), text.size());
+    std::string unit = text.substr(std::min(text.find_first_not_of(' ', end), text.size()));
+    std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return char(std::toupper(c)); });
+    constexpr std::array<std::pair<const char*, double>, 12> units{{{"", 1},
+                                                                    {"B", 1},
+                                                                    {"KB", 1e3},
+                                                                    {"MB", 1e6},
+                                                                    {"GB", 1e9},
+                                                                    {"TB", 1e12},
+                                                                    {"KIB", 1024.0},
+                                                                    {"MIB", 1024.0 * 1024},
+                                                                    {"GIB", 1024.0 * 1024 * 1024},
+                                                                    {"M", 1e6},
+                                                                    {"G", 1e9},
+                                                                    {"T", 1e12}}};
+    const auto found = std::find_if(units.begin(), units.end(), [&](const auto& known) { return known.first == unit; });
+    double value = 0;
+    const auto [last, error] = std::from_chars(text.data(), text.data() + end, value);
+    if (found == units.end() || error != std::errc{} || last != text.data() + end || !(value > 0))
+        throw ArgumentError(option + " is \"" + text + "\", needs a size > 0, for example 8GB or 500MB");
+    return value * found->second;
 }
 
 Limits parse_limits(const std::string& option, const std::string& text, const std::string& form,

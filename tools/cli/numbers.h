@@ -23,6 +23,9 @@ std::string counted(std::uint64_t count, const std::string& noun);
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, char separator = ',',
                                   const std::string& advice = "");
 
+/// Reads "8GB", "500MB", "1.5 GiB", or a number of bytes, and returns bytes. Throws ArgumentError unless they are > 0.
+double parse_size(const std::string& option, const std::string& text);
+
 /// Two numbers, the smaller one first.
 struct Limits {
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();

@@ -2,6 +2,7 @@
 
 #include "host.h"
 #include "messages.h"
+#include "spooled_text.h"
 #include "streams.h"
 
 #include <spawnfield/output_file.h>
@@ -14,7 +15,14 @@ void write_output(const CommonArgs& args, const std::string& file,
 {
     clear_progress_bar(args);
     if (file.empty() || is_standard(file)) {
-        if (args.host->wants_text()) writer([&](std::string_view text) { args.host->write(text); });
+        if (args.host->wants_text()) {
+            SpooledText whole;
+            writer([&](std::string_view text) {
+                stop_if_interrupted(args);
+                whole.add(text);
+            });
+            whole.pass_to([&](std::string_view text) { args.host->write(text); });
+        }
         args.host->flush();
         then();
         return;

@@ -5,6 +5,7 @@
 #include <spawnfield/error.h>
 #include <spawnfield/map.h>
 #include <spawnfield/map_export.h>
+#include <spawnfield/output_file.h>
 #include <spawnfield/scene.h>
 
 #include <algorithm>
@@ -78,23 +79,12 @@ std::vector<NamedPath> inputs_of(const CLI::App& command)
     return out;
 }
 
-/// Returns whether the output destroys nothing: it is a pipe or a device, or a file behind /dev/stdout, which keeps its
-/// content.
-bool is_harmless(const std::string& value)
-{
-    std::error_code ignored;
-    const std::string name = fs::absolute(value, ignored).lexically_normal().string();
-    const bool is_of_system = name.starts_with("/dev/") || name.starts_with("/proc/");
-    return (is_of_system && fs::is_symlink(name, ignored)) ||
-           (fs::exists(value, ignored) && !fs::is_regular_file(value, ignored) && !fs::is_directory(value, ignored));
-}
-
 std::vector<NamedPath> outputs_of(const CLI::App& command)
 {
     std::vector<NamedPath> out;
     for (const char* const option : output_options)
         for (const std::string& value : values_of(command, option)) {
-            if (value.empty() || is_standard(value) || is_harmless(value)) continue;
+            if (value.empty() || is_standard(value) || is_written_directly(value)) continue;
             out.push_back({option, value, without_links(value)});
         }
     if (values_of(command, "--format") != std::vector<std::string>{"nav2"}) return out;

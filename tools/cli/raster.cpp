@@ -96,6 +96,21 @@ void write_table(const RasterCommandArgs& args, const RasterResult& result,
     summary.cells = cells.size();
 }
 
+/// Writes the poses of a large raster part by part. Returns the result without poses.
+RasterResult write_in_parts(const RasterCommandArgs& args, const Judge& judge, const RasterOptions& options,
+                            Summary& summary)
+{
+    RasterResult result;
+    write_output(args, args.out, [&](const auto& sink) {
+        result = raster_in_parts(judge, options, [&](const RasterResult& part) {
+            summary.lap("query");
+            write_raster_csv(part, args.write_aerial, sink, args.threads);
+            summary.lap("write");
+        });
+    });
+    return result;
+}
+
 Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summary& summary)
 {
     RasterOptions options = options_of(args, command);
@@ -107,6 +122,13 @@ Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summar
     notices_about_stance(args, command, session.robot);
     notice_about_heading(args, session.map, options.heading);
     summary.lap("load");
+    const bool needs_all = args.is_thesis() || args.adaptive || !args.heatmap.empty() || args.host->wants_values();
+    if (!needs_all) {
+        const RasterResult result = write_in_parts(args, *session.judge, options, summary);
+        summary.set_verdicts(result.counts, result.exact_checks);
+        return {};
+    }
+    require_raster_memory(args, session.map, options);
     RasterResult result = raster(*session.judge, options);
     summary.lap("query");
     const auto draw = [&] {

@@ -6,6 +6,8 @@
 #include "numbers.h"
 #include "spelling.h"
 
+#include <spawnfield/memory.h>
+
 namespace spawnfield::cli {
 namespace {
 
@@ -99,6 +101,17 @@ void complete(RasterOptions& options, const RasterArgs& args, const Session& ses
         require_above_ground(session.robot, options.offset);
     else if (const std::string why = flat_ground_complaint(session.robot, *options.offset); !why.empty())
         notice(args, why);
+}
+
+void require_raster_memory(const CommonArgs& args, const Map& map, const RasterOptions& options)
+{
+    if (options.dims != 2) return;  // of a 3D raster, only poses near the ground are held
+    constexpr double growth = 1.5;  // of a vector that does not know its size yet
+    const double per_pose = growth *
+                            (sizeof(RasterPose) + (options.stance == Stance::Settled ? sizeof(RasterRest) : 0));
+    const Bounds bounds = options.bounds.is_empty() ? map.bounds : options.bounds;
+    const Vec3 size = bounds.max - bounds.min;
+    require_cell_memory({.per_item = per_pose}, "--step", options.step, size.x() * size.y(), memory_limit(args));
 }
 
 }  // namespace spawnfield::cli

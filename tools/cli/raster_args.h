@@ -30,4 +30,7 @@ RasterOptions raster_options(const RasterArgs& args, const CLI::App& command);
 /// above --max-height, NothingFits if the robot collides with all flat ground.
 void complete(RasterOptions& options, const RasterArgs& args, const Session& session, Summary& summary);
 
+/// Throws MemoryError if a 2D raster that is held in memory as a whole needs too much. `options` have their step.
+void require_raster_memory(const CommonArgs& args, const Map& map, const RasterOptions& options);
+
 }  // namespace spawnfield::cli

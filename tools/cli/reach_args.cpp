@@ -5,6 +5,7 @@
 #include "spelling.h"
 
 #include <spawnfield/kept_graph.h>
+#include <spawnfield/memory.h>
 #include <spawnfield/room.h>
 
 #include <algorithm>
@@ -131,6 +132,14 @@ void notice_if_long(const QueryArgs& query, const ReachOptions& options, const S
                       "passages");
 }
 
+void require_memory_for(const QueryArgs& query, const ReachOptions& options, const Session& session)
+{
+    constexpr double per_place = 32;  // bytes; measured with 25 million places
+    const Vec3 size = session.map.bounds.max - session.map.bounds.min;
+    require_cell_memory({.per_item = per_place}, "--reach-step", *options.step, size.x() * size.y(),
+                        memory_limit(query));
+}
+
 }  // namespace
 
 ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Session& session, Summary& summary,
@@ -138,6 +147,7 @@ ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Ses
 {
     ReachOptions options = with_defaults(reach_options(query, args), session.robot);
     options.keep_ways = keep_ways;
+    require_memory_for(query, options, session);
     notice_if_long(query, options, session);
     options.progress = progress_bar(query, command + ", islands");
     const KeptGraph kept = kept_graph(*session.judge, options);

@@ -61,7 +61,8 @@ void add_scene_options(CLI::App& command, SceneArgs& args)
                        "Height of the walls of a 2D map (map.yaml of nav2 or ROS), m (default 2)");
     auto* strict = command.add_flag(
         "--strict", args.strict,
-        "Refuse a world with a missing file, for example a mesh (missing includes are always refused)");
+        "Refuse a world with a missing file, for example a mesh (missing includes are always refused), or with a part "
+        "far away from all others");
     command
         .add_flag("--allow-missing", args.allow_missing,
                   "Leave out included models, and files of a scene.yaml, that are not found")

@@ -5,6 +5,8 @@
 #include "numbers.h"
 #include "streams.h"
 
+#include <spawnfield/input_file.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -54,8 +56,7 @@ std::optional<ReaderProcess> reader_for(const CommonArgs& args, const std::strin
         fs::path folder = fs::weakly_canonical(file, unreachable);
         if (!fs::is_directory(folder, unreachable)) folder = folder.parent_path();
         for (const fs::path& read : files)
-            if (std::mismatch(folder.begin(), folder.end(), read.begin(), read.end()).first != folder.end())
-                host->outside_files.insert(read.string());
+            if (!is_in_folder(read, folder)) host->outside_files.insert(read.string());
     };
     return reader;
 }
@@ -111,12 +112,33 @@ Scene open_scene(const CommonArgs& args, const std::string& file, const SceneOpt
 
 PoseTable open_poses(const CommonArgs& args, const std::string& file)
 {
-    if (const PoseTable* const table = args.host->input<PoseTable>(file)) return *table;
-    PoseTable table = is_standard(file) ? parse_poses(read_standard_input(), input_name(file), args.allow_empty)
-                                        : read_poses(file, args.allow_empty);
-    for (const std::string& text : table.notices) notice(args, text);
-    return table;
+    return PoseParts(args, file, PoseStream::all).next();
 }
+
+PoseParts::PoseParts(const CommonArgs& args, const std::string& file, std::size_t poses_of_part)
+    : args_(args), in_memory_(args.host->input<PoseTable>(file)), poses_of_part_(poses_of_part)
+{
+    if (in_memory_ != nullptr) return;
+    if (is_standard(file))
+        stream_.emplace([&args](char* to, std::size_t size) { return read_standard_input(args, to, size); },
+                        input_name(file), args.allow_empty);
+    else
+        stream_.emplace(file, args.allow_empty);
+}
+
+PoseTable PoseParts::next()
+{
+    if (in_memory_ != nullptr) {
+        has_ended_ = true;
+        return *in_memory_;
+    }
+    PoseTable part = stream_->next(poses_of_part_, args_.threads);
+    has_ended_ = stream_->has_ended();
+    for (const std::string& text : part.notices) notice(args_, text);
+    return part;
+}
+
+double PoseParts::share() const { return stream_ ? stream_->share() : 1; }
 
 void notice_if_off_map(const CommonArgs& args, const Map& map, const std::string& option, const Bounds& bounds)
 {
@@ -141,26 +163,36 @@ void notice_about_heading(const CommonArgs& args, const Map& map, const std::opt
                          "used; `bake --auto-label slope=30` makes steep faces obstacles");
 }
 
-void notice_about_tilted(const CommonArgs& args, const std::string& file, const PoseTable& table)
+std::uint64_t count_tilted(const PoseTable& table)
 {
     const auto is_tilted = [](const Pose& pose) { return pose.rotation(2, 2) < 1 - 1e-12; };
-    const auto count = std::count_if(table.poses.begin(), table.poses.end(), is_tilted);
-    if (count > 0)
-        notice(args, input_name(file) + ": roll and pitch of " + counted(std::uint64_t(count), "pose") +
+    return std::uint64_t(std::count_if(table.poses.begin(), table.poses.end(), is_tilted));
+}
+
+void notice_about_tilted(const CommonArgs& args, const std::string& file, std::uint64_t tilted)
+{
+    if (tilted > 0)
+        notice(args, input_name(file) + ": roll and pitch of " + counted(tilted, "pose") +
                          " are not used, because the robot is let down level");
 }
 
-std::string not_valid_words(const VerdictReport& report)
+void NotValid::add(const VerdictReport& report)
 {
-    constexpr std::size_t shown = 5;
-    const std::vector<std::string> names = pose_names(report.table);
-    std::string first;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        if (remains_invalid(report, i) && ++count <= shown) first += "\n  " + names[i] + ": " + reason(report, i);
-    if (count > shown) first += "\n  and " + std::to_string(count - shown) + " more";
-    return std::to_string(count) + " of " + counted(names.size(), "pose") + (count == 1 ? " is " : " are ") +
-           (report.repairs == nullptr ? "not valid:" : "neither valid nor repaired:") + first;
+    std::optional<std::vector<std::string>> names;  // made only if they are needed
+    with_repairs_ = report.repairs != nullptr;
+    all_ += report.judgements.size();
+    for (std::size_t i = 0; i < report.judgements.size(); ++i) {
+        if (!remains_invalid(report, i) || ++count_ > shown) continue;
+        if (!names) names = pose_names(report.table, report.first);
+        first_ += "\n  " + (*names)[i] + ": " + reason(report, i);
+    }
+}
+
+std::string NotValid::words() const
+{
+    return std::to_string(count_) + " of " + counted(all_, "pose") + (count_ == 1 ? " is " : " are ") +
+           (with_repairs_ ? "neither valid nor repaired:" : "not valid:") + first_ +
+           (count_ > shown ? "\n  and " + std::to_string(count_ - shown) + " more" : "");
 }
 
 }  // namespace spawnfield::cli

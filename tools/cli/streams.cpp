@@ -1,11 +1,15 @@
 #include "streams.h"
 
+#include "messages.h"
+
 #include <spawnfield/error.h>
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <iostream>
-#include <iterator>
+#include <cerrno>
+#include <cstring>
 
 namespace spawnfield::cli {
 namespace {
@@ -60,10 +64,26 @@ void check_folder(const CLI::App& command)
 
 }  // namespace
 
-std::string read_standard_input()
+std::size_t read_standard_input(const CommonArgs& args, char* to, std::size_t size)
 {
-    std::string text(std::istreambuf_iterator<char>(std::cin), {});
-    if (std::cin.bad()) throw FileError("standard input", "cannot be read");
+    for (;;) {
+        stop_if_interrupted(args);
+        const ssize_t count = ::read(STDIN_FILENO, to, size);
+        if (count >= 0) return std::size_t(count);
+        if (errno != EINTR) throw FileError("standard input", std::string("cannot be read: ") + std::strerror(errno));
+    }
+}
+
+std::string read_standard_input(const CommonArgs& args)
+{
+    constexpr std::size_t piece = 1 << 20;
+    std::string text;
+    for (std::size_t count = 1; count > 0;) {
+        const std::size_t before = text.size();
+        text.resize(before + piece);
+        count = read_standard_input(args, text.data() + before, piece);
+        text.resize(before + count);
+    }
     return text;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "common_args.h"
+
 #include <CLI/CLI.hpp>
 
 #include <array>
@@ -19,8 +21,12 @@ inline std::string input_name(const std::string& file) { return is_standard(file
 /// Returns the name under which an output file can be opened, for example a picture.
 inline std::string output_name(const std::string& file) { return is_standard(file) ? "/dev/stdout" : file; }
 
-/// Returns all bytes of standard input. Throws FileError.
-std::string read_standard_input();
+/// Copies the next bytes of standard input to a buffer of this size, and returns their number; 0: it has ended. Throws
+/// FileError, and Interrupted after Ctrl-C, also while it waits.
+std::size_t read_standard_input(const CommonArgs& args, char* to, std::size_t size);
+
+/// Returns all bytes of standard input. Throws the same.
+std::string read_standard_input(const CommonArgs& args);
 
 /// Throws ArgumentError if `-` was given for an option that cannot use it, or for two inputs or two outputs.
 void check_streams(const CLI::App& command);

@@ -24,10 +24,16 @@ void note_interrupt(int signal)
     std::signal(signal, SIG_DFL);
 }
 
+/// Reading from a pipe or a terminal ends after a signal (no SA_RESTART), so that the reader can look for it.
 void catch_interrupts()
 {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-        if (std::signal(signal, note_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup ignores SIGHUP
+    struct sigaction action = {};
+    action.sa_handler = note_interrupt;
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        struct sigaction old = {};
+        sigaction(signal, nullptr, &old);
+        if (old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);  // nohup ignores SIGHUP
+    }
 }
 
 /// Returns the text as it may go to a terminal. Names in files may contain escape sequences, which could change

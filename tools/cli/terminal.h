@@ -20,6 +20,7 @@ public:
     bool is_interrupted() const override;
     void forget_interruption() override;
     bool wants_text() const override { return true; }
+    bool wants_values() const override { return false; }
     void write(std::string_view text) override;
     void flush() override;
     void summarize(const std::string& line, const std::string& json, bool is_quiet) override;
