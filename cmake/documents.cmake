@@ -1,5 +1,5 @@
-# Files that describe the program: completion for shells, the man page, the list of libraries, and the documentation. The
-# program itself prints the first two. The target spawnfield_documents, a part of `all`, makes them in share/.
+# Files that describe the program: completion for shells, the man page, the list of libraries, and the documentation.
+# The program itself prints the first two. The target spawnfield_documents, a part of `all`, makes them in share/.
 set(documents ${PROJECT_BINARY_DIR}/share)
 file(MAKE_DIRECTORY ${documents})
 set(bash ${documents}/spawnfield.bash)
