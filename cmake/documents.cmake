@@ -34,7 +34,9 @@ add_custom_target(spawnfield_documents ALL DEPENDS ${bash} ${zsh} ${fish} ${docu
 
 set(doc_folder ${CMAKE_INSTALL_DATADIR}/doc/spawnfield)
 install(FILES ${bash} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME spawnfield)
+# With the prefix /usr, Debian's zsh looks only into vendor-completions. All others look into site-functions.
 install(FILES ${zsh} DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+install(FILES ${zsh} DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES ${fish} DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 install(FILES ${documents}/spawnfield.1.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/man/man1)
 install(FILES ${sbom} README.md CHANGELOG.md DESTINATION ${doc_folder})

@@ -138,7 +138,7 @@ def package_component(facts):
     if facts["source:Package"] != facts["Package"] or facts["source:Version"] != version:
         qualifiers["upstream"] = f"{facts['source:Package']}@{facts['source:Version']}"
     text = "&".join(f"{key}={quote(value, safe='.-_~:')}" for key, value in sorted(qualifiers.items()))
-    purl = f"pkg:deb/{name}/{facts['Package']}@{quote(version, safe='.-_~:')}?{text}"
+    purl = f"pkg:deb/{name}/{quote(facts['Package'])}@{quote(version, safe='.-_~:')}?{text}"
     return {"type": "library", "bom-ref": purl, "name": facts["Package"], "version": version, "purl": purl}
 
 

@@ -26,11 +26,18 @@ for module in $(dpkg -L spawnfield | grep 'libspawnfield_.*\.so$'); do
   ! ldd "$module" | grep 'not found' || fail "$module lacks libraries"
 done
 
-for file in bash-completion/completions/spawnfield zsh/site-functions/_spawnfield \
-  fish/vendor_completions.d/spawnfield.fish man/man1/spawnfield.1.gz doc/spawnfield/spawnfield.cdx.json; do
-  [ -s "/usr/share/$file" ] || fail "/usr/share/$file is missing"
-done
-bash -c 'source /usr/share/bash-completion/completions/spawnfield && complete -p spawnfield' >/dev/null
+[ -s /usr/share/doc/spawnfield/spawnfield.cdx.json ] || fail "the list of libraries is missing"
+
+# The shells and man find what the package has for them.
+DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends bash-completion fish man-db zsh >/dev/null
+bash -c 'source /usr/share/bash-completion/bash_completion && _completion_loader spawnfield; complete -p spawnfield' |
+  grep -q -- '-F _spawnfield' || fail "bash does not complete the program"
+[ "$(zsh -f -c "autoload -U compinit; compinit -D -u; print \$_comps[spawnfield]")" = _spawnfield ] ||
+  fail "zsh does not complete the program"
+[ "$(fish -c 'complete -C "spawnfield bake --unknown bl"' | cut -f 1)" = blocked ] ||
+  fail "fish does not complete the program"
+man spawnfield >page.txt
+grep -q '^SPAWNFIELD(1)' page.txt || fail "man does not show the page"
 
 DEBIAN_FRONTEND=noninteractive apt-get purge -y -qq spawnfield >/dev/null
 [ -z "$(find /usr -name '*spawnfield*')" ] || fail "files remain after the package was removed"

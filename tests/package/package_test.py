@@ -17,11 +17,12 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
 FILES = [
-    "bin/spawnfield", "include/spawnfield/query.h", "share/doc/spawnfield/copyright", "share/doc/spawnfield/README.md",
-    "share/doc/spawnfield/CHANGELOG.md", "share/doc/spawnfield/docs/robots.md",
+    "bin/spawnfield", "include/spawnfield/query.h", "share/doc/spawnfield/copyright",
+    "share/doc/spawnfield/README.md", "share/doc/spawnfield/CHANGELOG.md", "share/doc/spawnfield/docs/robots.md",
     "share/doc/spawnfield/spawnfield.cdx.json", "share/bash-completion/completions/spawnfield",
-    "share/zsh/site-functions/_spawnfield", "share/fish/vendor_completions.d/spawnfield.fish",
-    "share/man/man1/spawnfield.1.gz", "share/spawnfield/maps/training/scene.yaml",
+    "share/zsh/site-functions/_spawnfield", "share/zsh/vendor-completions/_spawnfield",
+    "share/fish/vendor_completions.d/spawnfield.fish", "share/man/man1/spawnfield.1.gz",
+    "share/spawnfield/maps/training/scene.yaml",
 ]
 MODULES = ["crs", "drawing", "mesh_reader", "narrow_phase", "sdf"]
 
