@@ -78,7 +78,7 @@ TEST_CASE("completion scripts and the man page have every command and every opti
     std::string man = run_program(folder, "man").out;
     man = std::regex_replace(man, std::regex("\\\\-"), "-");
     const auto all = options_in_help(folder);
-    CHECK(all.size() == 14);
+    CHECK(all.size() >= 14);
     CHECK(all.at("sample").size() > 60);
     for (const auto& [command, options] : all) {
         if (command.empty()) continue;
