@@ -123,7 +123,7 @@ complete -F _spawnfield spawnfield
 
 // ---- zsh ----
 
-/// Returns the specification of one option for zsh's _arguments.
+/// Returns how zsh's _arguments completes the values of an option.
 std::string zsh_value(const OptionSyntax& option)
 {
     const std::string message = ":" + with_backslashes(option.type, ":\\") + ":";
@@ -139,6 +139,7 @@ std::string zsh_value(const OptionSyntax& option)
     return out;
 }
 
+/// Returns the words for zsh's _arguments that describe an option, one for each of its names.
 std::string zsh_option(const OptionSyntax& option)
 {
     const std::string excluded = option.is_repeatable ? "*" : "(" + join(option.names, " ") + ")";
@@ -152,6 +153,7 @@ std::string zsh_option(const OptionSyntax& option)
     return out;
 }
 
+/// Returns the function that completes one command.
 std::string zsh_command(const CommandSyntax& command)
 {
     std::string out = "\n_spawnfield_" + command.name + "() {\n  _arguments -s -S";
