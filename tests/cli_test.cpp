@@ -70,7 +70,7 @@ TEST_CASE("every command has help with an example, and the program prints its ve
     CHECK(run_program(folder, "--help").status == 0);
     const ProgramRun version = run_program(folder, "--version");
     CHECK(version.status == 0);
-    CHECK(version.out == spawnfield::version() + "\n");
+    CHECK(version.out.starts_with(spawnfield::version() + "\n"));
 }
 
 TEST_CASE("every example works after the steps of the README, and does not change their files", "[slow]")

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs the Debian/Ubuntu packages that are missing: install-dependencies.sh [--tests] [--experiments].
+# Installs the Debian/Ubuntu packages that are missing: install-dependencies.sh [--tests] [--experiments] [--package].
 # Without an option it installs what the build of spawnfield needs. --tests adds the packages that only tests and
-# benchmarks need, --experiments those of the plots. It needs root or sudo only if a package is missing.
+# benchmarks need, --experiments those of the plots, --package those that make a Debian package. It needs root or sudo
+# only if a package is missing.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -16,13 +17,14 @@ packages=(
 for argument in "$@"; do
   case "$argument" in
     --tests)
-      packages+=(catch2 clang clang-format libembree-dev libopencv-imgcodecs-dev librecast-dev)
+      packages+=(catch2 clang clang-format dpkg-dev file groff-base libembree-dev libopencv-imgcodecs-dev librecast-dev)
       packages+=(python3-matplotlib python3-roslaunch)
       ;;
     --experiments) packages+=(python3-matplotlib) ;;
+    --package) packages+=(dpkg-dev file) ;;
     *)
       echo "install-dependencies.sh: unknown argument $argument" >&2
-      echo "usage: tools/install-dependencies.sh [--tests] [--experiments]" >&2
+      echo "usage: tools/install-dependencies.sh [--tests] [--experiments] [--package]" >&2
       exit 2
       ;;
   esac

@@ -1,3 +1,4 @@
+#include "about/about.h"
 #include "command.h"
 #include "overwriting.h"
 #include "spelling.h"
@@ -108,6 +109,7 @@ int main(int argc, char** argv)
     ChosenCommand chosen{.host = &terminal};
     CLI::App app;
     add_commands(app, command_line(argc, argv), chosen);
+    add_about(app, chosen);
     const std::vector<std::string> names = command_names(app);
     if (has_unknown_command(names, argc, argv)) {
         terminal.complain(std::string(argv[1]) + " is not a command; the commands are " +

@@ -9,7 +9,6 @@
 #include <spawnfield/scene.h>
 
 #include <algorithm>
-#include <array>
 #include <exception>
 #include <filesystem>
 
@@ -17,11 +16,6 @@ namespace spawnfield::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// All options whose value is the path of a file or a folder that is read. Some values can also be something else.
-constexpr std::array read_options{"map",        "scene",   "what",    "--robot", "--robot-file", "--world",
-                                  "--poses",    "--pairs", "--paths", "--avoid", "--spawns",     "--region",
-                                  "--keep-out", "--rules", "--fleet", "--with"};
 
 struct NamedPath {
     std::string option;  ///< as in messages
@@ -62,7 +56,7 @@ std::vector<NamedPath> inputs_of(const CLI::App& command)
 {
     std::vector<NamedPath> out;
     std::error_code ignored;
-    for (const char* const option : read_options) {
+    for (const char* const option : input_options) {
         if (command.get_name() == "sample" && std::string(option) == "--pairs") continue;  // a number
         const std::string label = words_for(option);
         for (const std::string& value : values_of(command, option)) {

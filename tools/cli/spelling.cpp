@@ -64,6 +64,10 @@ std::string choice_of(const std::vector<std::string>& words, const std::string& 
     return out;
 }
 
+/// Begins the name of each validator that one_of() makes; the words follow, with commas between them. Help does not
+/// show the name, so it remains if an option has no list of words in its help.
+const std::string name_of_choice = "one of ";
+
 std::vector<std::string> option_names(const CLI::App& command)
 {
     std::vector<std::string> names;
@@ -100,12 +104,23 @@ std::string suggestion(const std::string& text, const std::vector<std::string>& 
 
 CLI::Validator one_of(std::vector<std::string> words)
 {
-    const std::string all = "{" + CLI::detail::join(words, ",") + "}";
+    const std::string list = CLI::detail::join(words, ",");
     return {[words = std::move(words)](const std::string& text) {
                 if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
                 return "\"" + text + "\" is not one of " + CLI::detail::join(words, ", ") + suggestion(text, words);
             },
-            all};
+            "{" + list + "}", name_of_choice + list};
+}
+
+std::vector<std::string> choices_of(CLI::Option& option)
+{
+    try {
+        for (int i = 0;; ++i)
+            if (const std::string& name = option.get_validator(i)->get_name(); name.starts_with(name_of_choice))
+                return CLI::detail::split(name.substr(name_of_choice.size()), ',');
+    } catch (const CLI::OptionNotFound&) {  // there are only i validators
+        return {};
+    }
 }
 
 std::string unknown_option(const CLI::App& app)

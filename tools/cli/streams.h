@@ -9,6 +9,11 @@
 
 namespace spawnfield::cli {
 
+/// All options whose value is the path of a file or a folder that is read. Some values can also be something else.
+inline constexpr std::array input_options{"map",        "scene",   "what",    "--robot", "--robot-file", "--world",
+                                          "--poses",    "--pairs", "--paths", "--avoid", "--spawns",     "--region",
+                                          "--keep-out", "--rules", "--fleet", "--with"};
+
 /// All options whose value is the path of a file or a folder to write. If it is `-`, the file goes to standard output.
 inline constexpr std::array output_options{"--out", "--repaired", "--path", "--summary", "--heatmap", "--picture"};
 
