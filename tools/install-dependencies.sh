@@ -16,7 +16,7 @@ packages=(
 for argument in "$@"; do
   case "$argument" in
     --tests)
-      packages+=(catch2 clang clang-format libembree-dev libopencv-imgcodecs-dev librecast-dev)
+      packages+=(catch2 clang clang-format libclang-rt-dev libembree-dev libopencv-imgcodecs-dev librecast-dev)
       packages+=(python3-matplotlib python3-roslaunch)
       ;;
     --experiments) packages+=(python3-matplotlib) ;;
