@@ -59,6 +59,17 @@ TEST_CASE("each file that the fuzzer has found gives a result or a FileError")
     CHECK(files == std::size_t(std::count_if(begin(all), end(all), [](const auto& e) { return e.is_regular_file(); })));
 }
 
+TEST_CASE("a kept graph and a terrain.tiff that lie about sizes are refused before memory is allocated for them")
+{
+    const auto message = [](const std::string& name, const std::string& file) {
+        const std::vector<fuzz::Reader> all = readers();
+        const auto reader = std::find_if(all.begin(), all.end(), [&](const auto& known) { return known.name == name; });
+        return fuzz::Bench(*reader).run(bytes_of(fs::path(source_folder()) / "tests/data/fuzz" / name / file));
+    };
+    CHECK_THAT(message("graphs", "too-many-places"), Contains("it has too many places for its ground"));
+    CHECK_THAT(message("maps", "huge-tile"), Contains("input.tiff: is cut short in page height.0; bake the map again"));
+}
+
 TEST_CASE("the fuzzer notices other exceptions, messages without a file, and files that are left behind")
 {
     const auto run = [](auto read) {

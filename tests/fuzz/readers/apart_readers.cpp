@@ -6,7 +6,7 @@
 
 #include <sys/resource.h>
 
-#include <chrono>
+#include <optional>
 
 // Foreign libraries, behind the border that protects the program: files are read in a process of their own, in which
 // assimp, libsdformat, OctoMap and libtiff may crash, but not for long and not with much memory.
@@ -18,35 +18,35 @@ using namespace spawnfield;
 
 constexpr double most_seconds = 20, most_megabytes = 1000;
 
-double seconds_now()
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+/// Processor time and memory of all child processes so far.
+struct Cost {
+    double seconds, megabytes;  ///< of all together; of the largest
+};
 
-double megabytes_of_children()
+Cost cost_of_children()
 {
     rusage usage{};
     getrusage(RUSAGE_CHILDREN, &usage);
-    return double(usage.ru_maxrss) / 1000;
+    const auto seconds = [](const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); };
+    return {seconds(usage.ru_utime) + seconds(usage.ru_stime), double(usage.ru_maxrss) / 1000};
 }
 
 void read_apart(const fs::path& file, const fs::path& program)
 {
-    const double start = seconds_now();
-    const auto check_cost = [&] {
-        require(seconds_now() - start < most_seconds, "reading took more than 20 s");
-        require(megabytes_of_children() < most_megabytes, "reading took more than 1 GB of memory");
-    };
+    const double before = cost_of_children().seconds;
+    std::optional<FileError> refused;
     try {
         const Scene scene = load_scene_apart(file, {.allow_missing = true}, {program});
         require(fault_of(scene).empty(), "a scene has a fault");
-    } catch (const FileError&) {
-        check_cost();
-        throw;
+    } catch (const FileError& error) {
+        refused = error;
     } catch (const ArgumentError& error) {  // of an option that this file needs
-        throw FileError(file.string(), error.what());
+        refused = FileError(file.string(), error.what());
     }
-    check_cost();
+    const Cost cost = cost_of_children();
+    require(cost.seconds - before < most_seconds, "reading took more than 20 s of processor time");
+    require(cost.megabytes < most_megabytes, "reading took more than 1 GB of memory");
+    if (refused) throw *refused;
 }
 
 }  // namespace
