@@ -158,6 +158,11 @@ bool ReachGraph::Impl::is_consistent() const
         const std::uint32_t nodes = first_node[p + 1] - first_node[p];  // wraps around if they are not ascending
         if (valid[p] == 0 || (nodes != 1 && nodes != std::uint32_t(std::popcount(valid[p])))) return false;
     }
+    // The lengths of paths are whole numbers, which larger heights would exceed.
+    const Bounds& space = judge.map().geometry.bounds();
+    constexpr double rounding = 1e-3;  // m
+    const ZRange heights{space.min.z() - rounding, space.max.z() + rounding};
+    if (!std::ranges::all_of(ground, [&](double height) { return heights.contains(height, 0); })) return false;
     for (const Way way : all_ways) {
         const bool is_kept = keep == Keep::Ways && (way != Way::Aside || goes_aside(*options.drive));
         if (ways[std::size_t(way)].size() != (is_kept ? places : 0)) return false;
