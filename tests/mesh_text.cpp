@@ -2,13 +2,61 @@
 
 #include "base/number.h"
 
+#include <zlib.h>
+
 #include <cstring>
+#include <stdexcept>
+#include <utility>
 
 using spawnfield::append_number;
 using spawnfield::number;
 
 namespace mesh_text {
 namespace {
+
+std::string little_endian(std::uint64_t value, int bytes)
+{
+    std::string out;
+    for (int k = 0; k < bytes; ++k) out += char(value >> 8 * k & 255);
+    return out;
+}
+
+std::string deflated(const std::string& text)
+{
+    std::string out(text.size() + 100, '\0');
+    z_stream stream{};
+    deflateInit2(&stream, 9, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+    stream.avail_in = uInt(text.size());
+    stream.next_out = reinterpret_cast<Bytef*>(out.data());
+    stream.avail_out = uInt(out.size());
+    if (deflate(&stream, Z_FINISH) != Z_STREAM_END) throw std::runtime_error("cannot compress a file for tests");
+    out.resize(stream.total_out);
+    deflateEnd(&stream);
+    return out;
+}
+
+/// Returns a compressed ZIP archive of these files.
+std::string zip(const std::vector<std::pair<std::string, std::string>>& files)
+{
+    std::string out, directory;
+    for (const auto& [name, text] : files) {
+        const std::string packed = deflated(text);
+        const std::string common = little_endian(20, 2) + little_endian(0, 2) + little_endian(8, 2) +
+                                   little_endian(0, 4) +
+                                   little_endian(
+                                       crc32(0, reinterpret_cast<const Bytef*>(text.data()), uInt(text.size())), 4) +
+                                   little_endian(packed.size(), 4) + little_endian(text.size(), 4) +
+                                   little_endian(name.size(), 2) + little_endian(0, 2);
+        directory += "PK\1\2" + little_endian(20, 2) + common + little_endian(0, 2) + little_endian(0, 2) +
+                     little_endian(0, 2) + little_endian(0, 4) + little_endian(out.size(), 4) + name;
+        out += "PK\3\4" + common + name + packed;
+    }
+    const std::string count = little_endian(files.size(), 2);
+    const std::size_t start = out.size();
+    return out + directory + "PK\5\6" + little_endian(0, 4) + count + count + little_endian(directory.size(), 4) +
+           little_endian(start, 4) + little_endian(0, 2);
+}
 
 std::string spaced(const std::vector<double>& values)
 {
@@ -214,5 +262,26 @@ hand::Mesh box(const spawnfield::Vec3& low, const spawnfield::Vec3& high)
 {
     return hand::moved(hand::box(high - low), {(low + high) / 2, spawnfield::Mat3::Identity()});
 }
+
+std::string package_3mf(const std::string& attributes, const std::string& objects, const std::string& extra)
+{
+    return zip(
+        {{"[Content_Types].xml", "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"/>"},
+         {"_rels/.rels",
+          "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
+          "Id=\"a\" "
+          "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\" "
+          "Target=\"/3D/3dmodel.model\"/></Relationships>"},
+         {"3D/3dmodel.model", "<?xml version=\"1.0\"?><model " + attributes +
+                                  " xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>" +
+                                  objects + "</resources><build><item objectid=\"1\"/></build></model>"},
+         {"extra", extra}});
+}
+
+const std::string wedge_3mf =
+    "<object id=\"1\" type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"4\" y=\"0\" "
+    "z=\"0\"/><vertex x=\"0\" y=\"2\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles><triangle "
+    "v1=\"0\" v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"0\" v2=\"3\" "
+    "v3=\"2\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/></triangles></mesh></object>";
 
 }  // namespace mesh_text

@@ -28,6 +28,13 @@ std::string dae(const std::vector<Node>& nodes, const DaeOptions& options = {});
 
 std::string gltf(const std::vector<Node>& nodes);
 
+/// The object of a 3MF package: a corner of a box of 4 x 2 x 1, with the number 1.
+extern const std::string wedge_3mf;
+
+/// Returns a 3MF package with these attributes of its <model> and these objects, and with another file.
+std::string package_3mf(const std::string& attributes, const std::string& objects = wedge_3mf,
+                        const std::string& extra = "");
+
 /// Returns the box from one corner to the other.
 hand::Mesh box(const spawnfield::Vec3& low, const spawnfield::Vec3& high);
 

@@ -201,6 +201,9 @@ TEST_CASE("a scene or robot with wrong indices is refused, and bytes that are cu
     CHECK(fault([](Scene& s) { ++s.pieces[0].triangle_count; }) ==
           "a piece has a triangle or a part that does not exist");
     CHECK(fault([](Scene& s) { s.triangle_pieces[0] = 1; }) == "a triangle has a piece that does not exist");
+    const std::string ignored = "an element has the label `ignore`, so it should have been left out";
+    CHECK(fault([](Scene& s) { s.triangle_labels[0] = Label::Ignore; }) == ignored);
+    CHECK(fault([](Scene& s) { s.primitives[0].label = Label::Ignore; }) == ignored);
     CHECK(fault([](Scene& s) { s.primitives[0].part = 2; }) ==
           "a primitive has no extent, or a part that does not exist");
     CHECK(fault([](Scene& s) { s.primitives[0].shape.size.x() = -1; }) ==

@@ -17,7 +17,8 @@ packages=(
 for argument in "$@"; do
   case "$argument" in
     --tests)
-      packages+=(catch2 clang clang-format dpkg-dev file groff-base libembree-dev libopencv-imgcodecs-dev librecast-dev)
+      packages+=(catch2 clang clang-format dpkg-dev file groff-base libclang-rt-dev libembree-dev)
+      packages+=(libopencv-imgcodecs-dev librecast-dev)
       packages+=(python3-matplotlib python3-roslaunch)
       ;;
     --experiments) packages+=(python3-matplotlib) ;;

@@ -33,6 +33,11 @@ std::string fault_of(const Scene& scene)
     if (scene.triangle_labels.size() != triangles || scene.triangle_pieces.size() != triangles ||
         scene.triangle_groups.size() > triangles)
         return "arrays of triangles differ in length";
+    const auto has_ignored_label = [](const Primitive& primitive) { return primitive.label == Label::Ignore; };
+    if (std::find(scene.triangle_labels.begin(), scene.triangle_labels.end(), Label::Ignore) !=
+            scene.triangle_labels.end() ||
+        std::any_of(scene.primitives.begin(), scene.primitives.end(), has_ignored_label))
+        return "an element has the label `ignore`, so it should have been left out";
     if (!are_below(scene.triangles, scene.vertices.size())) return "a triangle has a vertex that does not exist";
     if (!are_finite(scene.vertices)) return "a vertex is not finite";
     if (!std::all_of(scene.pieces.begin(), scene.pieces.end(),

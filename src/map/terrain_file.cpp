@@ -43,10 +43,14 @@ TerrainMap::Page read_page(TIFF* tiff, const std::filesystem::path& file, const 
         throw FileError(file.string(), "has a page that is not deflated with predictor 3; bake the map again");
     TerrainMap::Page page{description, {}};
     const std::uint32_t tiles = TIFFNumberOfTiles(tiff);
+    const auto cut_short = [&] {
+        return FileError(file.string(), "is cut short in page " + page.name + "; bake the map again");
+    };
     for (std::uint32_t t = 0; t < tiles; ++t) {
-        std::string bytes(std::size_t(TIFFGetStrileByteCount(tiff, t)), '\0');
-        if (TIFFReadRawTile(tiff, t, bytes.data(), tmsize_t(bytes.size())) != tmsize_t(bytes.size()))
-            throw FileError(file.string(), "is cut short in page " + page.name + "; bake the map again");
+        const std::uint64_t size = TIFFGetStrileByteCount(tiff, t);
+        if (size > std::filesystem::file_size(file)) throw cut_short();  // before memory is allocated for it
+        std::string bytes(size, '\0');
+        if (TIFFReadRawTile(tiff, t, bytes.data(), tmsize_t(bytes.size())) != tmsize_t(bytes.size())) throw cut_short();
         page.tiles.push_back(std::move(bytes));
     }
     return page;

@@ -32,11 +32,13 @@ std::vector<std::uint32_t> counts_of(const std::vector<std::uint32_t>& first)
     return out;
 }
 
-/// The reverse.
-std::vector<std::uint32_t> first_of(const std::vector<std::uint32_t>& counts)
+/// The reverse. Throws std::runtime_error if each group has more than `most` things on average: a damaged file might
+/// claim so many that they do not fit the memory.
+std::vector<std::uint32_t> first_of(const std::vector<std::uint32_t>& counts, std::uint64_t most)
 {
     std::vector<std::uint32_t> out(counts.size() + 1, 0);
     std::partial_sum(counts.begin(), counts.end(), out.begin() + 1);
+    if (out.back() > most * counts.size()) throw std::runtime_error("it has too many places for its ground");
     return out;
 }
 
@@ -130,10 +132,10 @@ ReachGraph::Impl::Impl(const Judge& judge_, const ReachOptions& options_, Keep k
     : Impl(judge_, options_, keep_, Empty())
 {
     BinaryReader in(bytes);
-    first = first_of(in.get_runs<std::uint32_t>(std::uint64_t(grid.cols) * std::uint64_t(grid.rows)));
+    first = first_of(in.get_runs<std::uint32_t>(std::uint64_t(grid.cols) * std::uint64_t(grid.rows)), nowhere);
     ground = in.get_runs<double>(first.back());
     valid = in.get_runs<HeadingSet>(first.back());
-    first_node = first_of(in.get_runs<std::uint32_t>(first.back()));
+    first_node = first_of(in.get_runs<std::uint32_t>(first.back()), lattice_headings);
     node_islands = in.get_runs<std::uint32_t>(first_node.back());
     for (auto count = in.get<std::uint64_t>(); count > 0; --count) {
         Island& island = islands.emplace_back();
@@ -156,6 +158,11 @@ bool ReachGraph::Impl::is_consistent() const
         const std::uint32_t nodes = first_node[p + 1] - first_node[p];  // wraps around if they are not ascending
         if (valid[p] == 0 || (nodes != 1 && nodes != std::uint32_t(std::popcount(valid[p])))) return false;
     }
+    // The lengths of paths are whole numbers, which larger heights would exceed.
+    const Bounds& space = judge.map().geometry.bounds();
+    constexpr double rounding = 1e-3;  // m
+    const ZRange heights{space.min.z() - rounding, space.max.z() + rounding};
+    if (!std::ranges::all_of(ground, [&](double height) { return heights.contains(height, 0); })) return false;
     for (const Way way : all_ways) {
         const bool is_kept = keep == Keep::Ways && (way != Way::Aside || goes_aside(*options.drive));
         if (ways[std::size_t(way)].size() != (is_kept ? places : 0)) return false;
