@@ -175,7 +175,8 @@ TEST_CASE("a map that is replaced again and again while it is read is the old on
     std::size_t from_b = 0, reads = 0;
     std::string failure;
     try {
-        for (; reads < 300 && failure.empty(); ++reads) {
+        const auto has_seen_both = [&] { return from_b > 0 && from_b < reads; };
+        for (; (reads < 300 || (!has_seen_both() && reads < 100'000)) && failure.empty(); ++reads) {
             const Map map = read_map(folder / "map");
             const bool is_b = map.hash == hash_b;
             from_b += is_b;
@@ -194,7 +195,7 @@ TEST_CASE("a map that is replaced again and again while it is read is the old on
     is_done = true;
     baking.join();
     CHECK(failure == "");
-    CHECK(reads == 300);
+    CHECK(reads >= 300);
     CHECK(from_b > 0);
     CHECK(from_b < reads);
 }

@@ -133,7 +133,8 @@ struct StoredMap {
     explicit StoredMap(const fs::path& source)
     {
         constexpr auto overwrite = fs::copy_options::recursive | fs::copy_options::overwrite_existing;
-        for (int version = 3; version <= map_format_version; ++version)
+        constexpr int last = 7;  // stored; version 8 has only a key of map.yaml more
+        for (int version = 3; version <= last; ++version)
             fs::copy(source / "tests/data/maps" / ("format-" + std::to_string(version)), folder / "map", overwrite);
     }
 
