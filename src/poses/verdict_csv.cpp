@@ -1,6 +1,7 @@
 #include "base/csv.h"
 #include "base/number.h"
 #include "poses/pose_columns.h"
+#include "poses/pose_json.h"
 
 #include <spawnfield/verdict_report.h>
 
