@@ -7,6 +7,7 @@
 #include "numbers.h"
 #include "picture_args.h"
 #include "place_args.h"
+#include "raster_args.h"
 #include "reach_args.h"
 #include "session.h"
 #include "spelling.h"
