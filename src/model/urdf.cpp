@@ -128,9 +128,8 @@ private:
             };
             if (name == "origin" && element.Attribute("quat_xyzw") != nullptr && element.Attribute("rpy") == nullptr)
                 refuse("<origin quat_xyzw> cannot be read here; write the rotation as rpy");
-            if (name != "geometry" || element.Parent() == nullptr ||
-                std::string(element.Parent()->Value()) != "collision")
-                return;
+            const char* const parent = element.Parent()->Value();  // nullptr: the document
+            if (name != "geometry" || parent == nullptr || parent != std::string("collision")) return;
             std::size_t shapes = 0;
             for_each_child(element, nullptr, [&](const Xml&) { ++shapes; });
             if (shapes > 1)
