@@ -28,15 +28,12 @@ SPAWNFIELD_API std::string memory_text(double bytes);
 /// About how much memory some work needs.
 struct MemoryNeed {
     double fixed = 0;     ///< bytes
-    double per_item = 0;  ///< bytes for each cell of a grid, or for each thing that is asked for
+    double per_item = 0;  ///< bytes for each cell of a grid
 };
 
 /// Throws MemoryError if cells of this size (m) that cover an area (m2) need more than `limit` bytes; it says which
 /// size would fit. `name`: of the option for the size, for messages.
 SPAWNFIELD_API void require_cell_memory(const MemoryNeed& need, const std::string& name, double cell, double area,
                                         double limit);
-
-/// Throws MemoryError if so many things need more than `limit` bytes; it says how many would fit. `noun`: their name.
-SPAWNFIELD_API void require_memory(const MemoryNeed& need, const std::string& noun, double count, double limit);
 
 }  // namespace spawnfield

@@ -1,12 +1,12 @@
+#include "base/input_file.h"
+
 #include "base/input_watch.h"
 
 #include <spawnfield/error.h>
-#include <spawnfield/input_file.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 
 namespace spawnfield {
 
@@ -49,9 +49,7 @@ FileError unreachable_file(const fs::filesystem_error& error)
     return {error.path1().string(), "cannot be reached: " + error.code().message()};
 }
 
-namespace {
-
-std::ifstream opened(const fs::path& file)
+std::ifstream open_file(const fs::path& file)
 {
     require_file(file);
     std::ifstream stream(file, std::ios::binary);
@@ -59,11 +57,9 @@ std::ifstream opened(const fs::path& file)
     return stream;
 }
 
-}  // namespace
-
 std::string read_file(const fs::path& file)
 {
-    std::ifstream stream = opened(file);
+    std::ifstream stream = open_file(file);
     std::string bytes(std::size_t(fs::file_size(file)), '\0');
     stream.read(bytes.data(), std::streamsize(bytes.size()));
     if (std::size_t(stream.gcount()) != bytes.size()) throw FileError(file.string(), "cannot be read to its end");
@@ -72,7 +68,7 @@ std::string read_file(const fs::path& file)
 
 std::string read_start(const fs::path& file, std::size_t most)
 {
-    std::ifstream stream = opened(file);
+    std::ifstream stream = open_file(file);
     std::string bytes(most, '\0');
     stream.read(bytes.data(), std::streamsize(most));
     bytes.resize(std::size_t(stream.gcount()));

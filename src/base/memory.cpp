@@ -89,13 +89,6 @@ double available_in_all_groups()
     return out;
 }
 
-/// Returns "needs about 12.4 GB at 0.05 m, the limit is 8 GB (--max-memory)".
-std::string too_much(double needed, const std::string& what, double limit)
-{
-    return "needs about " + memory_text(needed) + " of memory " + what + ", the limit is " + memory_text(limit) +
-           " (--max-memory)";
-}
-
 }  // namespace
 
 double available_memory() { return std::min(available_in_system(), available_in_all_groups()); }
@@ -119,7 +112,8 @@ void require_cell_memory(const MemoryNeed& need, const std::string& name, double
 {
     const double needed = need.fixed + need.per_item * area / (cell * cell);
     if (!(needed > limit)) return;
-    std::string message = too_much(needed, "at " + rounded(cell) + " m (" + name + ")", limit);
+    std::string message = "needs about " + memory_text(needed) + " of memory at " + rounded(cell) + " m (" + name +
+                          "), the limit is " + memory_text(limit) + " (--max-memory)";
     if (need.fixed < 0.9 * limit) {
         const double fits = std::sqrt(area * need.per_item / (limit - need.fixed));
         const double digit = std::pow(10, std::floor(std::log10(fits)) - 1);  // two digits, rounded up
@@ -128,15 +122,6 @@ void require_cell_memory(const MemoryNeed& need, const std::string& name, double
         message += ", and " + memory_text(need.fixed) + " are for the scene alone; a coarser one does not help";
     }
     throw MemoryError(message);
-}
-
-void require_memory(const MemoryNeed& need, const std::string& noun, double count, double limit)
-{
-    const double needed = need.fixed + need.per_item * count;
-    if (!(needed > limit)) return;
-    const double fits = std::max(0.0, std::floor((limit - need.fixed) / need.per_item));
-    throw MemoryError(too_much(needed, "for " + rounded(count) + " " + noun, limit) + "; " + rounded(std::floor(fits)) +
-                      " would fit");
 }
 
 }  // namespace spawnfield

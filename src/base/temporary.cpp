@@ -48,6 +48,12 @@ Descriptor create_folder(const fs::path& path)
     return out;
 }
 
+bool is_same(const Descriptor& descriptor, const struct stat& other)
+{
+    struct stat one {};
+    return fstat(descriptor.get(), &one) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+}
+
 /// Creates, locks, and then looks whether the name is still there: another run that looked for leftovers may have taken
 /// the lock first.
 Temporary make_temporary(const fs::path& target, Descriptor (*create)(const fs::path&))
@@ -116,10 +122,14 @@ LockResult try_lock(const Descriptor& descriptor, bool is_shared)
 
 bool is_named(const Descriptor& descriptor, const fs::path& path)
 {
-    struct stat open_one {
-    }, named{};
-    return fstat(descriptor.get(), &open_one) == 0 && lstat(path.c_str(), &named) == 0 &&
-           open_one.st_dev == named.st_dev && open_one.st_ino == named.st_ino;
+    struct stat named {};
+    return lstat(path.c_str(), &named) == 0 && is_same(descriptor, named);
+}
+
+bool is_reached_by(const Descriptor& descriptor, const fs::path& path)
+{
+    struct stat reached {};
+    return stat(path.c_str(), &reached) == 0 && is_same(descriptor, reached);
 }
 
 bool exchange_names(const fs::path& a, const fs::path& b)

@@ -66,6 +66,9 @@ LockResult try_lock(const Descriptor& descriptor, bool is_shared = false);
 /// Returns whether the path is the name of this open file or folder, and not a link to it.
 bool is_named(const Descriptor& descriptor, const std::filesystem::path& path);
 
+/// Returns the same, but follows a link.
+bool is_reached_by(const Descriptor& descriptor, const std::filesystem::path& path);
+
 /// Exchange two names, or rename unless the new name exists, atomically. Return false if this fails, for example
 /// because the file system cannot do it; then errno says why.
 bool exchange_names(const std::filesystem::path& a, const std::filesystem::path& b);

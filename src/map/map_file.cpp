@@ -1,3 +1,4 @@
+#include "base/temporary.h"
 #include "map/bounds_file.h"
 #include "map/changed_terrain.h"
 #include "map/geometry_file.h"
@@ -9,22 +10,12 @@
 #include <spawnfield/map.h>
 
 #include <fcntl.h>
-#include <sys/stat.h>
 
 namespace spawnfield {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Returns whether the path leads to this open folder.
-bool is_same_folder(const Descriptor& descriptor, const fs::path& folder)
-{
-    struct stat opened {
-    }, named{};
-    return fstat(descriptor.get(), &opened) == 0 && stat(folder.c_str(), &named) == 0 &&
-           opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
-}
 
 /// Opens the files of a map, whose names must not change meanwhile.
 Map opened_map(const fs::path& folder)
@@ -46,7 +37,7 @@ Map read_map(const fs::path& folder)
     constexpr int most_attempts = 100;
     for (int attempt = 1;; ++attempt) {
         const Descriptor before(open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
-        const auto is_replaced = [&] { return attempt < most_attempts && before && !is_same_folder(before, folder); };
+        const auto is_replaced = [&] { return attempt < most_attempts && before && !is_reached_by(before, folder); };
         try {
             Map map = opened_map(folder);
             if (!is_replaced()) return map;

@@ -14,16 +14,6 @@ namespace spawnfield {
 
 namespace fs = std::filesystem;
 
-const ListedFile& listed(const MapYaml& yaml, const std::string& name)
-{
-    const auto file = std::find_if(yaml.files.begin(), yaml.files.end(),
-                                   [&](const ListedFile& f) { return f.name == name; });
-    if (file == yaml.files.end())
-        throw FileError((yaml.map.folder / "map.yaml").string(),
-                        "does not list " + name + " under files; bake the map again");
-    return *file;
-}
-
 MapFiles::MapFiles(const MapYaml& yaml)
     : frame_(yaml.frame), occupancy_origin_(yaml.map.occupancy_origin), pages_(yaml.pages),
       terrain_(open_listed(yaml, "terrain.tiff")), occupancy_(open_listed(yaml, "occupancy.bt"))
@@ -34,7 +24,6 @@ MapFiles::OpenFile MapFiles::open_listed(const MapYaml& yaml, const std::string&
 {
     const fs::path file = yaml.map.folder / name;
     const ListedFile& entry = listed(yaml, name);
-    check_size(yaml.map.folder, entry);
     Descriptor descriptor(open(file.c_str(), O_RDONLY | O_CLOEXEC));
     if (!descriptor) throw FileError(file.string(), std::string("cannot be read: ") + std::strerror(errno));
     return {file, entry, std::move(descriptor)};

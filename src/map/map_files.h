@@ -9,7 +9,7 @@ namespace spawnfield {
 /// answers are those of one map, also if another run replaces or removes the folder meanwhile.
 class MapFiles {
 public:
-    /// Opens them, and verifies their sizes. Throws FileError.
+    /// Opens them. Throws FileError.
     explicit MapFiles(const MapYaml& yaml);
 
     /// Read and verify a file. Throw FileError.
@@ -34,8 +34,5 @@ private:
     std::vector<std::string> pages_;  ///< of terrain.tiff
     OpenFile terrain_, occupancy_;
 };
-
-/// Returns the entry of a file in map.yaml. Throws FileError if there is none.
-const ListedFile& listed(const MapYaml& yaml, const std::string& name);
 
 }  // namespace spawnfield

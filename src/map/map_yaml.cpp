@@ -295,6 +295,16 @@ MapYaml read_map_yaml(const fs::path& folder)
     return out;
 }
 
+const ListedFile& listed(const MapYaml& yaml, const std::string& name)
+{
+    const auto file = std::find_if(yaml.files.begin(), yaml.files.end(),
+                                   [&](const ListedFile& f) { return f.name == name; });
+    if (file == yaml.files.end())
+        throw FileError((yaml.map.folder / "map.yaml").string(),
+                        "does not list " + name + " under files; bake the map again");
+    return *file;
+}
+
 bool is_of_this_program(const fs::path& folder)
 {
     return read_file(folder / "map.yaml").find("\n" + program_lines()) != std::string::npos;

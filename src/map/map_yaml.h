@@ -25,6 +25,9 @@ struct MapYaml {
 /// Reads map.yaml of a map folder. Throws FileError.
 MapYaml read_map_yaml(const std::filesystem::path& folder);
 
+/// Returns the entry of a file in map.yaml. Throws FileError if there is none.
+const ListedFile& listed(const MapYaml& yaml, const std::string& name);
+
 /// Returns whether this version of the program baked the map, with these versions of its libraries. Throws FileError.
 bool is_of_this_program(const std::filesystem::path& folder);
 

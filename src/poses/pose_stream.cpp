@@ -1,16 +1,16 @@
 #include "base/csv.h"
+#include "base/input_file.h"
 #include "base/parallel.h"
 #include "poses/json_poses.h"
 #include "poses/pose_rows.h"
 
 #include <spawnfield/error.h>
-#include <spawnfield/input_file.h>
 #include <spawnfield/pose_stream.h>
 
 #include <algorithm>
 #include <cstring>
 #include <exception>
-#include <fstream>
+#include <memory>
 #include <optional>
 
 namespace spawnfield {
@@ -99,14 +99,12 @@ PoseStream::Source source_of(std::string text)
 
 PoseStream::Source source_of(const std::filesystem::path& file)
 {
-    require_file(file);
-    auto stream = std::make_shared<std::ifstream>(file, std::ios::binary);
-    if (!*stream) throw FileError(file.string(), std::string("cannot be read: ") + std::strerror(errno));
-    return [stream, name = file.string()](char* to, std::size_t size) {
-        stream->read(to, std::streamsize(size));
-        if (stream->bad()) throw FileError(name, "cannot be read to its end");
-        return std::size_t(stream->gcount());
-    };
+    return
+        [stream = std::make_shared<std::ifstream>(open_file(file)), name = file.string()](char* to, std::size_t size) {
+            stream->read(to, std::streamsize(size));
+            if (stream->bad()) throw FileError(name, "cannot be read to its end");
+            return std::size_t(stream->gcount());
+        };
 }
 
 }  // namespace

@@ -98,17 +98,18 @@ VerdictReport report_of(const CheckArgs& args, const PoseTable& table, const Che
 /// What is counted of all poses.
 struct Totals {
     VerdictCounts counts;
-    std::uint64_t exact_checks = 0, tilted = 0;
-    NotValid not_valid;
+    std::uint64_t exact_checks = 0;
+    std::uint64_t tilted = 0;  ///< only for settled poses
+    NotValid not_valid;        ///< only with --require-valid
 
-    void add(const VerdictReport& report)
+    void add(const CheckArgs& args, const VerdictReport& report)
     {
         for (const Judgement& judged : report.judgements) {
             ++counts[judged.verdict];
             exact_checks += judged.exact_check;
         }
-        tilted += count_tilted(report.table);
-        not_valid.add(report);
+        if (args.is_settled()) tilted += count_tilted(report.table);
+        if (args.require_valid) not_valid.add(report);
     }
 };
 
@@ -138,7 +139,7 @@ void check_in_parts(const CheckArgs& args, const Judge& judge, PoseParts& parts,
             summary.lap("query");
             write_verdicts_csv(report, sink, args.threads);
             summary.lap("write");
-            totals.add(report);
+            totals.add(args, report);
             if (!parts.has_next()) break;
             table = parts.next();
             summary.lap("load");
@@ -191,7 +192,7 @@ std::string check_at_once(const CheckArgs& args, const Judge& judge, const std::
     if (options) repairs = repair(judge, table, checked, *options, totals, summary);
     VerdictReport report = report_of(args, table, checked, judge);
     report.repairs = repairs ? &*repairs : nullptr;
-    totals.add(report);
+    totals.add(args, report);
     summary.lap("query");
     write_results(args, report);
     const std::string words = repairs ? unrepaired_words(args, *repairs) : "";
@@ -220,9 +221,9 @@ Ending run_check(const CheckArgs& args, const CLI::App& command, Summary& summar
         check_in_parts(args, *session.judge, parts, std::move(table), totals, summary);
     else
         ending.notice = check_at_once(args, *session.judge, options, std::move(table), totals, summary);
-    if (args.is_settled()) notice_about_tilted(args, args.poses, totals.tilted);
+    notice_about_tilted(args, args.poses, totals.tilted);
     summary.set_verdicts(totals.counts, totals.exact_checks);
-    if (args.require_valid && !totals.not_valid.is_empty()) {
+    if (!totals.not_valid.is_empty()) {
         ending.status = not_valid;
         ending.complaint = "--require-valid: " + totals.not_valid.words();
     }
