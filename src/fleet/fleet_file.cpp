@@ -148,7 +148,7 @@ void check_name(const YamlMap& map, const std::string& name)
     const bool is_word = is_letter(name[0]) && name.back() != '_' && name.find("__") == std::string::npos &&
                          std::ranges::all_of(name, [&](char c) { return is_letter(c) || is_digit(c) || c == '_'; });
     const std::size_t end = name.find_last_not_of("0123456789");
-    const bool is_numbered = end + 1 < name.size() && name[end] == '_';
+    const bool is_numbered = end != name.npos && end + 1 < name.size() && name[end] == '_';
     if (!is_word)
         map.fail("name", "is \"" + name +
                              "\", needs letters, digits and single _, and a letter first, so that every "
