@@ -11,6 +11,7 @@ find_package(yaml-cpp REQUIRED)
 find_package(tinyxml2 REQUIRED)
 find_package(sdformat12 REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(meshoptimizer REQUIRED)
 find_package(PNG REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(PROJ REQUIRED CONFIG)
@@ -27,5 +28,5 @@ pkg_check_modules(deflate REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(ccd REQUIRED IMPORTED_TARGET ccd)
 
 set(SPAWNFIELD_PRIVATE_LIBRARIES
-  octomap octomath yaml-cpp tinyxml2::tinyxml2 nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF
+  octomap octomath yaml-cpp tinyxml2::tinyxml2 nlohmann_json::nlohmann_json meshoptimizer::meshoptimizer PNG::PNG TIFF::TIFF
   ZLIB::ZLIB TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash PkgConfig::deflate Threads::Threads)

@@ -23,6 +23,7 @@ OWNERS = {  # public headers that have no .cpp file of the same name
     "place_quantities": "query",
     "query": "query",
     "reach": "reach",
+    "review": "review",
     "settled_pose": "settle",
     "simulators": "simulators",
     "spawn_file": "poses",

@@ -11,7 +11,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr int level = 1;
+constexpr int fast = 1, small = 9;  // levels
 
 template <auto release>
 struct Releaser {
@@ -30,7 +30,7 @@ void inflate_into(std::string_view stream, char* out, std::size_t size)
 }
 
 /// Calls the functions of libdeflate for a format.
-template <class Bound, class Compress>
+template <int level = fast, class Bound, class Compress>
 std::string compressed(std::string_view bytes, const Bound& bound_of, const Compress& compress)
 {
     thread_local const Compressor compressor(libdeflate_alloc_compressor(level));
@@ -47,6 +47,11 @@ std::string compressed(std::string_view bytes, const Bound& bound_of, const Comp
 std::string deflate_bytes(std::string_view bytes)
 {
     return compressed(bytes, libdeflate_zlib_compress_bound, libdeflate_zlib_compress);
+}
+
+std::string deflate_small(std::string_view bytes)
+{
+    return compressed<small>(bytes, libdeflate_zlib_compress_bound, libdeflate_zlib_compress);
 }
 
 std::string gzip_bytes(std::string_view bytes)

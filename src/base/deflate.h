@@ -10,6 +10,9 @@ namespace spawnfield {
 /// streams.
 std::string deflate_bytes(std::string_view bytes);
 
+/// The same, compressed for size rather than speed.
+std::string deflate_small(std::string_view bytes);
+
 /// Returns the bytes as a gzip file (RFC 1952) without a name and a time. Equal bytes give equal files.
 std::string gzip_bytes(std::string_view bytes);
 

@@ -1,6 +1,5 @@
-#include "base/parallel.h"
+#include "export/part_surfaces.h"
 #include "export/tessellation.h"
-#include "geometry/geometry_impl.h"
 #include "picture/palette.h"
 
 #include <spawnfield/error.h>
@@ -10,30 +9,14 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include <bit>
 #include <cmath>
-#include <unordered_map>
 
 namespace spawnfield {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Point = std::array<float, 3>;
 
 std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-// ---------------------------------------------------------------- the scene's elements, in its order
-
-struct CornersOfTriangle {
-    std::array<Point, 3> corners;  ///< y up, relative to the file's origin
-    std::uint32_t part = 0;
-    Label label = Label::Terrain;
-};
-
-struct Elements {
-    std::vector<CornersOfTriangle> triangles;
-    std::vector<Primitive> primitives;
-};
 
 Point rounded(const Vec3& point, const Vec3& origin)
 {
@@ -41,77 +24,7 @@ Point rounded(const Vec3& point, const Vec3& origin)
     return {float(p.x()), float(p.y()), float(p.z())};
 }
 
-/// Calls visit(tile, element) for each element of the scene, on several threads.
-template <class Visit>
-void for_each_element(const Geometry::Impl& geometry, int threads, const Visit& visit)
-{
-    geometry.for_each_tree([&](const Forest& forest, std::size_t tree) {
-        parallel_for(forest.trees[tree].boxes().size(), threads, {}, [&](std::size_t t) {
-            const Tile tile = geometry.open(forest, tree, t);
-            for (const std::uint32_t id : tile.ids)
-                if (id >= geometry.next.element) forest.tiles.fail_inconsistent();
-            for_each_bit(tile.alive, [&](std::uint32_t element) { visit(tile, element); });
-        });
-    });
-}
-
-/// Returns the scene's elements in the scene's order. Tiles have another order; the numbers of elements are ascending
-/// in the scene, but some may be missing in a changed scene.
-Elements elements_of(const Geometry& geometry, const Vec3& origin, int threads)
-{
-    enum class Kind : std::uint8_t { None, Triangle, Primitive };
-    const auto kind_of = [](const Tile& tile, std::uint32_t element) {
-        return tile.is_triangle(element) ? Kind::Triangle : Kind::Primitive;
-    };
-    const Geometry::Impl& impl = geometry.impl();
-    impl.expect_all();
-    std::vector<Kind> kinds(impl.next.element, Kind::None);
-    for_each_element(impl, threads, [&](const Tile& tile, std::uint32_t element) {
-        kinds[tile.ids[element]] = kind_of(tile, element);
-    });
-    std::vector<std::uint32_t> places(kinds.size());
-    std::uint32_t triangles = 0, primitives = 0;
-    for (std::size_t id = 0; id < kinds.size(); ++id)
-        if (kinds[id] != Kind::None) places[id] = kinds[id] == Kind::Triangle ? triangles++ : primitives++;
-    Elements out;
-    out.triangles.resize(triangles);
-    out.primitives.resize(primitives);
-    for_each_element(impl, threads, [&](const Tile& tile, std::uint32_t element) {
-        const std::uint32_t id = tile.ids[element], place = places[id];
-        if (kinds[id] != kind_of(tile, element))
-            impl.forests.front()->tiles.fail_inconsistent();  // two have one number
-        if (tile.is_triangle(element)) {
-            CornersOfTriangle& to = out.triangles[place];
-            const auto corners = tile.corners(element);
-            for (std::size_t c = 0; c < 3; ++c) to.corners[c] = rounded(corners[c], origin);
-            to.part = tile.part(element);
-            to.label = tile.label(element);
-        } else {
-            const TilePrimitive& from = tile.primitive(element);
-            out.primitives[place] = {from.shape(), from.part, from.label};
-        }
-    });
-    return out;
-}
-
-/// Returns the number of sides of round solids: fewer if there are many, because each has many triangles.
-int sides_for(const Elements& elements)
-{
-    const auto round = std::count_if(elements.primitives.begin(), elements.primitives.end(),
-                                     [](const Primitive& p) { return p.shape.kind != ShapeKind::Box; });
-    return round > 20000 ? 8 : round > 2000 ? 16 : 32;
-}
-
 // ---------------------------------------------------------------- the file
-
-struct PointHash {
-    std::size_t operator()(const Point& p) const
-    {
-        std::size_t hash = 0;
-        for (const float x : p) hash = hash * 1000003 + std::bit_cast<std::uint32_t>(x);
-        return hash;
-    }
-};
 
 /// A JSON array that is kept as text, because a million nodes as objects would take gigabytes.
 class JsonArray {
@@ -127,31 +40,6 @@ public:
 private:
     std::string text_;
     std::size_t size_ = 0;
-};
-
-/// The triangles of one material, with equal corners welded. Triangles with two equal corners, after rounding to
-/// float32, are left out.
-class Surface {
-public:
-    void add(const Point& a, const Point& b, const Point& c)
-    {
-        if (a == b || b == c || c == a) return;
-        for (const Point& corner : {a, b, c}) indices_.push_back(number_of(corner));
-    }
-    bool empty() const { return indices_.empty(); }
-    const std::vector<Point>& points() const { return points_; }
-    const std::vector<std::uint32_t>& indices() const { return indices_; }
-
-private:
-    std::uint32_t number_of(const Point& point)
-    {
-        const auto [entry, is_new] = numbers_.try_emplace(point, std::uint32_t(points_.size()));
-        if (is_new) points_.push_back(point);
-        return entry->second;
-    }
-    std::unordered_map<Point, std::uint32_t, PointHash> numbers_;
-    std::vector<Point> points_;
-    std::vector<std::uint32_t> indices_;
 };
 
 /// Returns the light of a colour channel, which glTF needs, from the value for a screen (sRGB, IEC 61966-2-1). Four
@@ -286,38 +174,9 @@ Look look_of(Label label)
     }
 }
 
-/// The elements of a part, which are consecutive: from `from` to before `to`.
-struct Range {
-    std::size_t from = 0, to = 0;
-};
-
-template <class Element>
-std::vector<Range> ranges_by_part(const std::vector<Element>& elements, std::size_t parts)
-{
-    std::vector<Range> out(parts);
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-        Range& range = out[elements[e].part];
-        if (range.to == 0) range.from = e;
-        range.to = e + 1;
-    }
-    return out;
-}
-
 /// Adds a node with the part's name and returns its number; nothing if the whole part is ignored.
-std::optional<std::size_t> add_part(GlbFile& file, const Elements& elements, const Range& triangles,
-                                    const Range& primitives, const std::string& name, const Vec3& origin, int sides)
+std::optional<std::size_t> add_part(GlbFile& file, const std::string& name, const PartSurfaces& surfaces)
 {
-    std::array<Surface, 3> surfaces;  // by label
-    for (std::size_t e = triangles.from; e < triangles.to; ++e) {
-        const auto& [corners, part, label] = elements.triangles[e];
-        surfaces[std::size_t(label)].add(corners[0], corners[1], corners[2]);
-    }
-    for (std::size_t e = primitives.from; e < primitives.to; ++e) {
-        const Primitive& primitive = elements.primitives[e];
-        tessellate(primitive.shape, sides, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-            surfaces[std::size_t(primitive.label)].add(rounded(a, origin), rounded(b, origin), rounded(c, origin));
-        });
-    }
     Json list = Json::array();
     for (std::size_t label = 0; label < surfaces.size(); ++label) {
         if (surfaces[label].empty()) continue;
@@ -414,18 +273,11 @@ void write_glb(const Map& map, const GlbMarkers& markers, const std::function<vo
     const std::vector<Part>& parts = map.geometry.parts();
     GlbFile file;
     std::vector<std::size_t> children;
-    {
-        const Elements elements = elements_of(map.geometry, origin, threads);
-        const int sides = sides_for(elements);
-        const std::vector<Range> triangles = ranges_by_part(elements.triangles, parts.size());
-        const std::vector<Range> primitives = ranges_by_part(elements.primitives, parts.size());
-        for (std::size_t part = 0; part < parts.size(); ++part) {
-            const auto node = add_part(file, elements, triangles[part], primitives[part], parts[part].name, origin,
-                                       sides);
-            if (node) children.push_back(*node);
-            if (progress) progress(double(part + 1) / double(parts.size()));
-        }
-    }
+    const auto to_point = [&](const Vec3& corner) { return rounded(corner, origin); };
+    for_each_part(map.geometry, to_point, threads, [&](std::size_t part, const PartSurfaces& surfaces) {
+        if (const auto node = add_part(file, parts[part].name, surfaces)) children.push_back(*node);
+        if (progress) progress(double(part + 1) / double(parts.size()));
+    });
     if (!markers.poses.empty()) {
         Markers drawn(file, markers);
         std::vector<std::size_t> spawns;

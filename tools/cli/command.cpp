@@ -39,6 +39,7 @@ void add_commands(CLI::App& app, const std::string& command_line, ChosenCommand&
         {"search", [&] { add_search(app, chosen); }},
         {"sample", [&] { add_sample(app, chosen); }},
         {"heatmap", [&] { add_heatmap(app, chosen); }},
+        {"review", [&] { add_review(app, command_line, chosen); }},
         {"export", [&] { add_export(app, chosen); }},
         {"audit", [&] { add_audit(app, chosen); }},
         {"experiment", [&] { add_experiment(app, command_line, chosen); }},

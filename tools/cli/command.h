@@ -72,6 +72,7 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen);
 void add_export(CLI::App& app, ChosenCommand& chosen);
 void add_audit(CLI::App& app, ChosenCommand& chosen);
 void add_clean(CLI::App& app, ChosenCommand& chosen);
+void add_review(CLI::App& app, const std::string& command_line, ChosenCommand& chosen);
 void add_experiment(CLI::App& app, const std::string& command_line, ChosenCommand& chosen);
 
 /// Adds all commands and the text of the program's help. `command_line`: for reports. `chosen` must have its host.

@@ -36,14 +36,6 @@ struct HeatmapArgs : QueryArgs {
     int size = 1000;
 };
 
-/// Returns the step that gives about 300 columns along the longer side: fine enough to look at, and quick.
-double default_step(const Map& map, const RasterOptions& options)
-{
-    const Bounds bounds = options.bounds.is_empty() ? map.bounds : options.bounds;
-    const double longest = std::max(bounds.max.x() - bounds.min.x(), bounds.max.y() - bounds.min.y());
-    return std::max(map.resolution, longest / 300);
-}
-
 /// The values of --quantity, in the order of HeatmapQuantity.
 const std::vector<std::string> quantities{"verdict",   "height", "slope", "clearance", "head_room",
                                           "roughness", "view",   "room",  "tilt",      "roll",
@@ -190,7 +182,7 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     const TerrainMap terrain = read_terrain(session.map);
     crop_to_ground(args, session.map, terrain, options);
     options.step = command.count("--step") > 0 ? parse_positive("--step", args.step)
-                                               : default_step(session.map, options);
+                                               : default_step(session.map, options, 300);
     require_raster_memory(args, session.map, options);
     summary.lap("load");
     const IslandChoice islands = choice_for(session.map, args, args.islands, command, asked_islands,

@@ -8,6 +8,8 @@
 
 #include <spawnfield/memory.h>
 
+#include <algorithm>
+
 namespace spawnfield::cli {
 namespace {
 
@@ -101,6 +103,13 @@ void complete(RasterOptions& options, const RasterArgs& args, const Session& ses
         require_above_ground(session.robot, options.offset);
     else if (const std::string why = flat_ground_complaint(session.robot, *options.offset); !why.empty())
         notice(args, why);
+}
+
+double default_step(const Map& map, const RasterOptions& options, int columns)
+{
+    const Bounds bounds = options.bounds.is_empty() ? map.bounds : options.bounds;
+    const double longest = std::max(bounds.max.x() - bounds.min.x(), bounds.max.y() - bounds.min.y());
+    return std::max(map.resolution, longest / columns);
 }
 
 void require_raster_memory(const CommonArgs& args, const Map& map, const RasterOptions& options)

@@ -30,6 +30,10 @@ RasterOptions raster_options(const RasterArgs& args, const CLI::App& command);
 /// above --max-height, NothingFits if the robot collides with all flat ground.
 void complete(RasterOptions& options, const RasterArgs& args, const Session& session, Summary& summary);
 
+/// Returns the step that gives about so many columns along the longer side of a raster, but not less than the map's
+/// resolution.
+double default_step(const Map& map, const RasterOptions& options, int columns);
+
 /// Throws MemoryError if a 2D raster that is held in memory as a whole needs too much. `options` have their step.
 void require_raster_memory(const CommonArgs& args, const Map& map, const RasterOptions& options);
 

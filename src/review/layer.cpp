@@ -1,0 +1,217 @@
+#include "review/layer.h"
+
+#include "base/number.h"
+#include "review/judged_poses.h"
+#include "review/reason_table.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/frames.h>
+#include <spawnfield/raster_islands.h>
+#include <spawnfield/raster_quantities.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace spawnfield {
+namespace {
+
+constexpr std::int32_t no_ground = std::numeric_limits<std::int32_t>::min();
+constexpr double angle_unit = std::numbers::pi / 32767;  // rad
+
+/// How heights become integers: z = z0 + unit * value.
+struct HeightScale {
+    double z0 = 0, unit = 1e-6;
+
+    double of(std::int32_t value) const { return z0 + unit * value; }
+    std::int32_t nearest(double z) const { return std::int32_t(std::lround((z - z0) / unit)); }
+    /// Returns the value of the lowest height that is not below z, so that no place gets below its ground.
+    std::int32_t above(double z) const
+    {
+        auto value = std::int32_t(std::ceil((z - z0) / unit));
+        while (of(value - 1) >= z) --value;  // corrects rounding
+        while (of(value) < z) ++value;
+        return value;
+    }
+};
+
+/// Returns the finest scale for all heights of a map and of poses in it.
+HeightScale scale_of(const Map& map, const RasterResult& raster)
+{
+    constexpr double most = 2e9;  // units
+    double low = std::min(map.bounds.min.z(), map.geometry.bounds().min.z()),
+           high = std::max(map.bounds.max.z(), map.geometry.bounds().max.z());
+    for (const RasterPose& pose : raster.poses) {
+        low = std::min(low, pose.z);
+        high = std::max(high, pose.z);
+    }
+    HeightScale out{std::floor(low)};
+    while ((high - out.z0) / out.unit > most) out.unit *= 10;
+    return out;
+}
+
+/// A quantity of all poses as 16-bit integers; 65535: none.
+Json add_quantity(PackWriter& pack, const std::string& name, const std::string& unit, const std::vector<double>& values)
+{
+    constexpr double most = 65534;
+    constexpr std::uint16_t none = 65535;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const double value : values) {
+        if (!std::isfinite(value)) continue;
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    if (!(low <= high)) low = high = 0;
+    const double scale = high > low ? (high - low) / most : 1;
+    std::vector<std::uint16_t> rounded;
+    for (const double value : values)
+        rounded.push_back(std::isfinite(value) ? std::uint16_t(std::lround((value - low) / scale)) : none);
+    return {{"name", name},
+            {"unit", unit},
+            {"scale", scale},
+            {"offset", low},
+            {"values", pack.delta(std::span<const std::uint16_t>(rounded))}};
+}
+
+const char* unit_of(PlaceQuantity quantity)
+{
+    switch (quantity) {
+    case PlaceQuantity::Tilt: return "rad";
+    case PlaceQuantity::View: return "";
+    case PlaceQuantity::Room: return "m2";
+    default: return "m";
+    }
+}
+
+std::int16_t rounded_angle(double angle)
+{
+    return std::int16_t(std::lround(std::remainder(angle, 2 * std::numbers::pi) / angle_unit));
+}
+
+/// The columns of a layer.
+struct LayerColumns {
+    std::vector<std::size_t> poses;  ///< of the raster
+    std::vector<std::uint32_t> cell, hit;
+    std::vector<std::int32_t> z, ground;
+    std::vector<std::uint8_t> verdict;
+    std::vector<std::int16_t> roll, pitch;
+    std::vector<double> tilt, margin;
+    ReasonTable reasons;
+    VerdictCounts counts;
+};
+
+/// Returns whether the robot was let down onto a higher layer than that of its pose in the raster. Then this place is
+/// that of another pose.
+bool is_on_higher_layer(const RasterResult& raster, std::size_t pose, const JudgedPlace& place)
+{
+    constexpr double least = 1e-6;  // m
+    return place.settled.has_pose && place.judgement.ground && pose < raster.rests.size() &&
+           place.judgement.ground->height > raster.rests[pose].layer_height + least;
+}
+
+LayerColumns judged_columns(const Judge& judge, const RasterResult& raster, const HeightScale& heights,
+                            const RunOptions& options)
+{
+    constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+    const RasterGrid& grid = raster.grid;
+    const auto cell_of = [&](const RasterPose& pose) {
+        const auto col = std::int64_t(std::lround((pose.x - grid.x0) / grid.step)),
+                   row = std::int64_t(std::lround((pose.y - grid.y0) / grid.step));
+        return std::uint32_t(row * grid.cols + col);
+    };
+    const Mat3 rotation = rotation_from_rpy(0, 0, raster.yaw);
+    const auto pose_of = [&](std::size_t i) {
+        const RasterPose& pose = raster.poses[i];
+        return Pose{Vec3(pose.x, pose.y, heights.of(heights.above(pose.z))), rotation};
+    };
+    LayerColumns out;
+    judge_places(judge, raster.stance, raster.poses.size(), pose_of, options,
+                 [&](std::size_t pose, const JudgedPlace& place) {
+                     if (is_on_higher_layer(raster, pose, place)) return;
+                     const Judgement& judgement = place.judgement;
+                     out.poses.push_back(pose);
+                     out.cell.push_back(cell_of(raster.poses[pose]));
+                     out.z.push_back(heights.above(raster.poses[pose].z));
+                     out.verdict.push_back(std::uint8_t(judgement.verdict));
+                     ++out.counts[judgement.verdict];
+                     out.hit.push_back(hit_number(judgement.hit, judge.map()));
+                     out.ground.push_back(judgement.ground ? heights.nearest(judgement.ground->height) : no_ground);
+                     out.reasons.add(place.reason);
+                     if (raster.stance != Stance::Settled) return;
+                     const SettledPose& rest = place.settled;
+                     out.roll.push_back(rest.has_pose ? rounded_angle(rest.roll) : std::int16_t(0));
+                     out.pitch.push_back(rest.has_pose ? rounded_angle(rest.pitch) : std::int16_t(0));
+                     out.tilt.push_back(rest.has_pose ? rest.tilt : no_value);
+                     out.margin.push_back(rest.has_pose ? rest.margin : no_value);
+                 });
+    return out;
+}
+
+/// Returns the values of some poses.
+template <class T>
+std::vector<T> chosen(const std::vector<T>& values, const std::vector<std::size_t>& poses)
+{
+    std::vector<T> out;
+    for (const std::size_t pose : poses) out.push_back(values[pose]);
+    return out;
+}
+
+template <class T>
+Json delta(PackWriter& pack, const std::vector<T>& values)
+{
+    return pack.delta(std::span<const T>(values));
+}
+
+}  // namespace
+
+Json add_layer(PackWriter& pack, const Judge& judge, const RasterResult& raster, const ReviewContents& contents,
+               const RunOptions& options)
+{
+    if (raster.dims != 2 || raster.heading)
+        throw ArgumentError("write_review", "a raster has three dimensions or several headings, needs two and one");
+    const bool is_settled = raster.stance == Stance::Settled;
+    const HeightScale heights = scale_of(judge.map(), raster);
+    const LayerColumns columns = judged_columns(judge, raster, heights, options);
+    const RasterGrid& grid = raster.grid;
+    Json counts = Json::array();
+    for (std::size_t v = 0; v < verdict_count; ++v) counts.push_back(columns.counts[Verdict(v)]);
+    Json out{
+        {"name", "yaw " + rounded(raster.yaw * 180 / std::numbers::pi) + " degrees"},
+        {"stance", is_settled ? "settled" : "level"},
+        {"yaw", raster.yaw},
+        {"grid", {{"x0", grid.x0}, {"y0", grid.y0}, {"step", grid.step}, {"cols", grid.cols}, {"rows", grid.rows}}},
+        {"z0", heights.z0},
+        {"z_unit", heights.unit},
+        {"count", columns.poses.size()},
+        {"counts", counts},
+        {"cell", delta(pack, columns.cell)},
+        {"z", delta(pack, columns.z)},
+        {"ground", delta(pack, columns.ground)},
+        {"verdict", delta(pack, columns.verdict)},
+        {"hit", delta(pack, columns.hit)},
+        {"reason", delta(pack, columns.reasons.indices())},
+        {"reasons", columns.reasons.texts()},
+        {"reason_numbers", pack.text(columns.reasons.numbers())}};
+    Json quantities = Json::array();
+    if (is_settled) {
+        out["roll"] = delta(pack, columns.roll);
+        out["pitch"] = delta(pack, columns.pitch);
+        quantities.push_back(add_quantity(pack, "tilt", "rad", columns.tilt));
+        quantities.push_back(add_quantity(pack, "margin", "m", columns.margin));
+    }
+    const RunOptions quiet{.threads = options.threads};
+    for (const PlaceQuantity quantity : contents.quantities) {
+        const std::vector<double> values = raster_quantity(judge, raster, quantity, contents.measures, quiet);
+        quantities.push_back(add_quantity(pack, to_string(quantity), unit_of(quantity), chosen(values, columns.poses)));
+    }
+    if (contents.graph && is_settled) {
+        std::vector<std::uint16_t> islands;
+        for (const std::int32_t island : chosen(islands_of(*contents.graph, judge, raster, quiet), columns.poses))
+            islands.push_back(std::uint16_t(std::clamp(island + 1, 0, 65535)));
+        out["island"] = delta(pack, islands);
+    }
+    out["quantities"] = std::move(quantities);
+    return out;
+}
+
+}  // namespace spawnfield
