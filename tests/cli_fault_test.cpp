@@ -178,7 +178,7 @@ TEST_CASE("wrong usage ends with status 2, and the message names option, value a
         {"experiment map --dims 2 --steps 1" + husky, "--out is required" + hint},
         {"frob map",
          "spawnfield: frob is not a command; the commands are bake, info, check, raster, search, sample, heatmap, "
-         "export, audit, experiment, clean, completion, man"},
+         "review, export, audit, experiment, clean, completion, man"},
         {sample + "-n 5 --seed -1", "--seed: -1 is not a whole number from 0 to 18446744073709551615" + hint},
     };
     for (const Refusal& refusal : refusals) desk.check(refusal, 2);

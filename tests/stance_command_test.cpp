@@ -233,7 +233,7 @@ TEST_CASE("options that do not suit the stance are refused, or get a notice")
     const ProgramRun info = arena("info map --settle");
     CHECK(info.status == 2);
     CHECK_THAT(info.err, Contains("--settle is not an option of info; settled robots are only for check, raster, "
-                                  "search, sample, heatmap, export and experiment\n"));
+                                  "search, sample, heatmap, review, export and experiment\n"));
     const std::string steps = "experiment map -o x --settle --steps 4 --dims ";
     refused(steps + "2 --offset 0.3", offset + "give --stance level in place of --settle, or leave --offset out\n");
     refused(steps + "3",
