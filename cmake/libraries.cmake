@@ -68,6 +68,8 @@ mark_as_advanced(CLI11_HEADER NLOHMANN_HEADER EIGEN_HEADER)
 add_library_to_list(assimp "${assimp_VERSION}" assimp::assimp BSD-3-Clause https://www.assimp.org)
 add_library_to_list(CLI11 "${CLI11_VERSION}" ${CLI11_HEADER}/CLI/CLI.hpp BSD-3-Clause
   https://github.com/CLIUtils/CLI11)
+list(GET httplib_LINK_LIBRARIES 0 httplib_library)
+add_library_to_list(cpp-httplib "${httplib_VERSION}" ${httplib_library} MIT https://github.com/yhirose/cpp-httplib)
 add_library_to_list(Eigen "${Eigen3_VERSION}" ${EIGEN_HEADER}/Eigen/Core MPL-2.0 https://eigen.tuxfamily.org)
 add_library_to_list(FCL "${fcl_VERSION}" fcl BSD-3-Clause https://github.com/flexible-collision-library/fcl)
 list(GET ccd_LINK_LIBRARIES 0 ccd_library)
@@ -78,6 +80,8 @@ add_library_to_list(libharu "${hpdf_version}" ${HPDF_LIBRARY} Zlib https://githu
 add_library_to_list(libpng "${PNG_VERSION_STRING}" PNG::PNG libpng-2.0 http://www.libpng.org)
 add_library_to_list(libsdformat "${sdformat12_VERSION}" sdformat12::sdformat12 Apache-2.0 http://sdformat.org)
 add_library_to_list(libtiff "${TIFF_VERSION_STRING}" TIFF::TIFF libtiff http://www.simplesystems.org/libtiff)
+add_library_to_list(meshoptimizer "${meshoptimizer_VERSION}" meshoptimizer::meshoptimizer MIT
+  https://github.com/zeux/meshoptimizer)
 add_library_to_list(nlohmann-json "${nlohmann_json_VERSION}" ${NLOHMANN_HEADER}/nlohmann/json.hpp MIT
   https://json.nlohmann.me)
 add_library_to_list(OctoMap "${octomap_VERSION}" octomap BSD-3-Clause https://octomap.github.io)

@@ -109,16 +109,17 @@ bool is_on_higher_layer(const RasterResult& raster, std::size_t pose, const Judg
            place.judgement.ground->height > raster.rests[pose].layer_height + least;
 }
 
+std::uint32_t cell_of(const RasterGrid& grid, const RasterPose& pose)
+{
+    const auto col = std::int64_t(std::lround((pose.x - grid.x0) / grid.step)),
+               row = std::int64_t(std::lround((pose.y - grid.y0) / grid.step));
+    return std::uint32_t(row * grid.cols + col);
+}
+
 LayerColumns judged_columns(const Judge& judge, const RasterResult& raster, const HeightScale& heights,
                             const RunOptions& options)
 {
     constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-    const RasterGrid& grid = raster.grid;
-    const auto cell_of = [&](const RasterPose& pose) {
-        const auto col = std::int64_t(std::lround((pose.x - grid.x0) / grid.step)),
-                   row = std::int64_t(std::lround((pose.y - grid.y0) / grid.step));
-        return std::uint32_t(row * grid.cols + col);
-    };
     const Mat3 rotation = rotation_from_rpy(0, 0, raster.yaw);
     const auto pose_of = [&](std::size_t i) {
         const RasterPose& pose = raster.poses[i];
@@ -130,7 +131,7 @@ LayerColumns judged_columns(const Judge& judge, const RasterResult& raster, cons
                      if (is_on_higher_layer(raster, pose, place)) return;
                      const Judgement& judgement = place.judgement;
                      out.poses.push_back(pose);
-                     out.cell.push_back(cell_of(raster.poses[pose]));
+                     out.cell.push_back(cell_of(raster.grid, raster.poses[pose]));
                      out.z.push_back(heights.above(raster.poses[pose].z));
                      out.verdict.push_back(std::uint8_t(judgement.verdict));
                      ++out.counts[judgement.verdict];
@@ -144,6 +145,35 @@ LayerColumns judged_columns(const Judge& judge, const RasterResult& raster, cons
                      out.tilt.push_back(rest.has_pose ? rest.tilt : no_value);
                      out.margin.push_back(rest.has_pose ? rest.margin : no_value);
                  });
+    return out;
+}
+
+/// Returns the columns that a raster itself has.
+LayerColumns raster_columns(const RasterResult& raster, const HeightScale& heights)
+{
+    LayerColumns out;
+    std::size_t column = 0;  // first pose of the pose's column
+    for (std::size_t pose = 0; pose < raster.poses.size(); ++pose) {
+        const RasterPose& at = raster.poses[pose];
+        const std::uint32_t cell = cell_of(raster.grid, at);
+        if (out.cell.empty() || cell != out.cell.back()) column = pose;
+        // On a higher layer: see is_on_higher_layer().
+        const auto is_same = [&](const RasterPose& other) { return other.z == at.z; };
+        if (std::any_of(raster.poses.begin() + std::ptrdiff_t(column), raster.poses.begin() + std::ptrdiff_t(pose),
+                        is_same))
+            continue;
+        out.poses.push_back(pose);
+        out.cell.push_back(cell);
+        out.z.push_back(heights.above(at.z));
+        out.verdict.push_back(std::uint8_t(at.verdict));
+        ++out.counts[at.verdict];
+        if (raster.rests.empty()) continue;
+        const RasterRest& rest = raster.rests[pose];
+        out.roll.push_back(rounded_angle(rest.roll));
+        out.pitch.push_back(rounded_angle(rest.pitch));
+        out.tilt.push_back(rest.tilt);
+        out.margin.push_back(rest.margin);
+    }
     return out;
 }
 
@@ -171,7 +201,8 @@ Json add_layer(PackWriter& pack, const Judge& judge, const RasterResult& raster,
         throw ArgumentError("write_review", "a raster has three dimensions or several headings, needs two and one");
     const bool is_settled = raster.stance == Stance::Settled;
     const HeightScale heights = scale_of(judge.map(), raster);
-    const LayerColumns columns = judged_columns(judge, raster, heights, options);
+    const LayerColumns columns = contents.is_update ? raster_columns(raster, heights)
+                                                    : judged_columns(judge, raster, heights, options);
     const RasterGrid& grid = raster.grid;
     Json counts = Json::array();
     for (std::size_t v = 0; v < verdict_count; ++v) counts.push_back(columns.counts[Verdict(v)]);

@@ -10,7 +10,7 @@ static_assert(std::endian::native == std::endian::little, "packs are little-endi
 
 Json PackWriter::add(const char* type, std::size_t count, std::size_t width, const char* coding, std::string_view bytes)
 {
-    const std::string stream = deflate_small(bytes);
+    const std::string stream = is_fast_ ? deflate_bytes(bytes) : deflate_small(bytes);
     Json out{{"type", type}, {"count", count}};
     if (width != 1) out["width"] = width;
     out["coding"] = coding;

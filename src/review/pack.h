@@ -16,6 +16,9 @@ namespace spawnfield {
 /// describes it in the pack's JSON.
 class PackWriter {
 public:
+    /// `is_fast`: blocks are compressed for speed rather than size.
+    explicit PackWriter(bool is_fast = false) : is_fast_(is_fast) {}
+
     template <class T>
     Json plain(std::span<const T> values, std::size_t width = 1)
     {
@@ -73,6 +76,7 @@ private:
 
     Json add(const char* type, std::size_t count, std::size_t width, const char* coding, std::string_view bytes);
 
+    const bool is_fast_;
     std::string blocks_;
 };
 

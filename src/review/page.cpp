@@ -128,31 +128,38 @@ void check(const ReviewContents& contents)
     if (contents.most_triangles == 0) throw ArgumentError("write_review", "most_triangles", 0, "at least 1");
 }
 
+/// Adds what does not change while a page is open.
+void add_scene(Json& head, PackWriter& pack, const Judge& judge, const ReviewContents& contents,
+               const RunOptions& options)
+{
+    const Map& map = judge.map();
+    const Bounds& bounds = map.geometry.bounds();
+    const Vec3 origin = bounds.is_empty() ? Vec3::Zero() : Vec3(((bounds.min + bounds.max) / 2).array().round());
+    head["map"] = {
+        {"name", map.name}, {"hash", map.hash}, {"resolution", map.resolution}, {"bounds", bounds_json(map.bounds)}};
+    head["origin"] = numbers(origin);
+    head["verdicts"] = verdicts_json();
+    head["parts"] = parts_json(map);
+    head["world"] = add_world(pack, world_mesh(map.geometry, origin, contents.most_triangles, options.threads));
+    head["floors"] = floors_json(contents.floors);
+    head["islands"] = islands_json(contents);
+    if (!contents.live.empty()) head["live"] = Json::parse(contents.live);
+}
+
 }  // namespace
 
 std::string review_pack(const Judge& judge, const ReviewContents& contents, const RunOptions& options)
 {
     check(contents);
-    const Map& map = judge.map();
-    const Bounds& bounds = map.geometry.bounds();
-    const Vec3 origin = bounds.is_empty() ? Vec3::Zero() : Vec3(((bounds.min + bounds.max) / 2).array().round());
     const bool is_settled = contents.stance == Stance::Settled;
-    PackWriter pack;
-    Json head{
-        {"format", "spawnfield-review/1"},
-        {"program", "spawnfield " + version()},
-        {"title", contents.title.empty() ? map.name + ", " + robot_name(judge.robot()) : contents.title},
-        {"command", contents.command},
-        {"map",
-         {{"name", map.name}, {"hash", map.hash}, {"resolution", map.resolution}, {"bounds", bounds_json(map.bounds)}}},
-        {"settings", judge_settings_json(judge, is_settled)},
-        {"origin", numbers(origin)},
-        {"verdicts", verdicts_json()},
-        {"parts", parts_json(map)},
-        {"world", add_world(pack, world_mesh(map.geometry, origin, contents.most_triangles, options.threads))},
-        {"robot", add_robot(pack, judge.robot())},
-        {"floors", floors_json(contents.floors)},
-        {"islands", islands_json(contents)}};
+    PackWriter pack(contents.is_update);
+    Json head{{"format", "spawnfield-review/1"},
+              {"program", "spawnfield " + version()},
+              {"title", contents.title.empty() ? judge.map().name + ", " + robot_name(judge.robot()) : contents.title},
+              {"command", contents.command},
+              {"settings", judge_settings_json(judge, is_settled)},
+              {"robot", add_robot(pack, judge.robot())}};
+    if (!contents.is_update) add_scene(head, pack, judge, contents, options);
     Json layers = Json::array(), spawns = Json::array(), pairs = Json::array();
     for (std::size_t i = 0; i < contents.rasters.size(); ++i) {
         RunOptions part = options;

@@ -25,8 +25,9 @@ Region read_one(const CommonArgs& common, const std::string& option, const std::
         out.name = text;
         return out;
     }
-    Region out = is_standard(text) ? parse_region(read_standard_input(common), input_name(text))
-                                   : read_region(text, cells);
+    Region out = is_standard(text)       ? parse_region(read_standard_input(common), input_name(text))
+                 : text.starts_with('{') ? parse_region(text, option + " in GeoJSON")
+                                         : read_region(text, cells);
     for (const std::string& words : out.notices) notice(common, words);
     return out;
 }
@@ -51,10 +52,12 @@ void add_area(CLI::App& command, AreaArgs& args)
 {
     start_group(command, help_group::region);
     command
-        .add_option("--region", args.regions,
-                    "Poses are only wanted here: x0,y0,x1,y1 or x0,y0,z0,x1,y1,z1 in m, or a file in the map's metres: "
-                    "GeoJSON, CSV (x,y), map.yaml of nav2 (its free cells). - is GeoJSON or CSV on standard input. "
-                    "Repeatable: poses are wanted in any of them")
+        .add_option(
+            "--region", args.regions,
+            "Poses are only wanted here: x0,y0,x1,y1 or x0,y0,z0,x1,y1,z1 in m, or a file in the map's metres: "
+            "GeoJSON, CSV (x,y), map.yaml of nav2 (its free cells). Or the text of GeoJSON itself; - is GeoJSON or "
+            "CSV on standard input. "
+            "Repeatable: poses are wanted in any of them")
         ->allow_extra_args(false);
     command
         .add_option("--keep-out", args.keep_outs,

@@ -48,6 +48,10 @@ public:
     /// Files that it read for a scene or a robot from outside of the folder of that scene or robot, without links.
     std::set<std::string> outside_files;
 
+    /// Whether `review` must leave an update of its page in `result`, because the page is open already: only layers, or
+    /// only the poses of --spawns.
+    bool wants_update = false;
+
     /// Things in memory that the caller gave in place of files. Their names stand where those of files would. A value
     /// is a std::shared_ptr<const T>, where T is Map, Robot, Scene or PoseTable.
     std::map<std::string, std::any> inputs;

@@ -1,6 +1,7 @@
 #include "about/about.h"
 #include "command.h"
 #include "overwriting.h"
+#include "shell_words.h"
 #include "spelling.h"
 #include "streams.h"
 #include "terminal.h"
@@ -12,8 +13,6 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cstring>
 #include <filesystem>
 #include <iostream>
 
@@ -72,23 +71,11 @@ std::vector<std::string> command_names(CLI::App& app)
     return names;
 }
 
-/// Returns the text that a shell reads as this one word.
-std::string quoted_if_needed(const std::string& word)
-{
-    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
-        return std::isalnum(c) || std::strchr("-_./:,=@+%", c);
-    });
-    if (plain) return word;
-    std::string out = "'";
-    for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
-    return out + "'";
-}
-
 std::string command_line(int argc, char** argv)
 {
-    std::string out = "spawnfield";
-    for (int i = 1; i < argc; ++i) out += " " + quoted_if_needed(argv[i]);
-    return out;
+    std::vector<std::string> words{"spawnfield"};
+    words.insert(words.end(), argv + 1, argv + argc);
+    return shell_line(words);
 }
 
 /// Returns whether the first argument is where a command should be, but is not the name of a command.

@@ -112,7 +112,8 @@ double default_step(const Map& map, const RasterOptions& options, int columns)
     return std::max(map.resolution, longest / columns);
 }
 
-void require_raster_memory(const CommonArgs& args, const Map& map, const RasterOptions& options)
+void require_raster_memory(const CommonArgs& args, const Map& map, const RasterOptions& options,
+                           const std::string& step_option)
 {
     if (options.dims != 2) return;  // of a 3D raster, only poses near the ground are held
     constexpr double growth = 1.5;  // of a vector that does not know its size yet
@@ -120,7 +121,7 @@ void require_raster_memory(const CommonArgs& args, const Map& map, const RasterO
                             (sizeof(RasterPose) + (options.stance == Stance::Settled ? sizeof(RasterRest) : 0));
     const Bounds bounds = options.bounds.is_empty() ? map.bounds : options.bounds;
     const Vec3 size = bounds.max - bounds.min;
-    require_cell_memory({.per_item = per_pose}, "--step", options.step, size.x() * size.y(), memory_limit(args));
+    require_cell_memory({.per_item = per_pose}, step_option, options.step, size.x() * size.y(), memory_limit(args));
 }
 
 }  // namespace spawnfield::cli

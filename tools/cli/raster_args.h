@@ -34,7 +34,9 @@ void complete(RasterOptions& options, const RasterArgs& args, const Session& ses
 /// resolution.
 double default_step(const Map& map, const RasterOptions& options, int columns);
 
-/// Throws MemoryError if a 2D raster that is held in memory as a whole needs too much. `options` have their step.
-void require_raster_memory(const CommonArgs& args, const Map& map, const RasterOptions& options);
+/// Throws MemoryError if a 2D raster that is held in memory as a whole needs too much. `options` have their step,
+/// which is the value of `step_option`.
+void require_raster_memory(const CommonArgs& args, const Map& map, const RasterOptions& options,
+                           const std::string& step_option = "--step");
 
 }  // namespace spawnfield::cli

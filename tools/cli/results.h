@@ -51,6 +51,11 @@ struct FoundVerdicts {
     Judge judge;  ///< that judged them
 };
 
+/// Of `review`, for a page that is open (Host::wants_update).
+struct FoundUpdate {
+    std::string pack;
+};
+
 /// Leaves a result in the host.
 template <class T>
 void keep(const CommonArgs& args, T&& found)

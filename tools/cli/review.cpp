@@ -9,6 +9,8 @@
 #include "place_args.h"
 #include "raster_args.h"
 #include "reach_args.h"
+#include "results.h"
+#include "review_live.h"
 #include "session.h"
 #include "spelling.h"
 #include "streams.h"
@@ -34,7 +36,8 @@ struct ReviewArgs : QueryArgs {
     std::string command_line, out, bounds, yaw = "0", quantities = "clearance";
     double step = 0;
     int headings = 1;
-    bool no_islands = false;
+    bool no_islands = false, serve = false;
+    int port = 0;
     std::size_t most_triangles = 1000000;
 };
 
@@ -86,20 +89,78 @@ void add_rasters(const ReviewArgs& args, const Session& session, RasterOptions o
     }
 }
 
+/// Throws ArgumentError for options that do not go together.
+void check_options(const ReviewArgs& args, const CLI::App& command)
+{
+    if (!args.serve && args.out.empty()) throw ArgumentError("--out is required, or --serve");
+    if (args.serve) refuse(command, {"--out"}, "and --serve do not go together: the page is in the browser then");
+    if (!args.serve) refuse(command, {"--port"}, "is only for --serve");
+    if (args.is_settled()) return;
+    refuse(command, {"--pairs"}, "is only for settled robots; leave --stance level out");
+    refuse(command, reach_option_names, "is only for settled robots; leave --stance level out");
+}
+
+/// Returns all that the page shows. An update has either rasters or poses.
+ReviewContents contents_of(const ReviewArgs& args, const CLI::App& command, const Session& session,
+                           RasterOptions options, Summary& summary)
+{
+    const bool is_update = args.host->wants_update;
+    ReviewContents contents{.command = args.command_line,
+                            .stance = args.stance(),
+                            .is_update = is_update,
+                            .most_triangles = args.most_triangles};
+    contents.measures = place_measures(args.places, command, "--quantity", args.quantities);
+    if (!is_update || command.count("--quantity") > 0)  // measuring takes longer than all else
+        contents.quantities = measured_quantities(args, contents.measures);
+    read_lists(args, contents);
+    summary.lap("load");
+    if (!is_update) {
+        contents.floors = floors_of(session.map);
+        if (args.is_settled() && (!args.no_islands || !contents.pairs.empty()))
+            contents.graph = find_islands(args, args.reach, session, summary, "review", !contents.pairs.empty());
+    }
+    if (is_update && !args.spawns.empty()) return contents;
+    options.step = command.count("--raster") > 0 ? parse_positive("--raster", args.step)
+                                                 : default_step(session.map, options, 500);
+    require_raster_memory(args, session.map, options, "--raster");
+    add_rasters(args, session, options, contents);
+    summary.lap("query");
+    return contents;
+}
+
+void summarize(const ReviewContents& contents, Summary& summary)
+{
+    VerdictCounts counts;
+    std::uint64_t exact_checks = 0;
+    for (const RasterResult& result : contents.rasters) {
+        counts += result.counts;
+        exact_checks += result.exact_checks;
+    }
+    summary.set_verdicts(counts, exact_checks);
+}
+
+/// Serves the page until Ctrl-C.
+void serve(const ReviewArgs& args, const CLI::App& command, const Session& session, ReviewContents& contents)
+{
+    const RunOptions options{.threads = args.threads};
+    const auto page = [&](const std::string& live) {
+        contents.live = live;
+        std::string out;
+        write_review(
+            *session.judge, contents, [&](std::string_view piece) { out += piece; }, options);
+        return out;
+    };
+    serve_review({args, command, std::make_shared<const Map>(session.map), std::make_shared<const Robot>(session.robot),
+                  page, args.port});
+}
+
 Ending run_review(const ReviewArgs& args, const CLI::App& command, Summary& summary)
 {
     if (!has_review_page())
         throw std::runtime_error(
             "this program was built without the review page; run tools/build-web.sh, and build it again");
-    if (!args.is_settled()) {
-        refuse(command, {"--pairs"}, "is only for settled robots; leave --stance level out");
-        refuse(command, reach_option_names, "is only for settled robots; leave --stance level out");
-    }
+    check_options(args, command);
     RasterOptions options = raster_options(args, command);
-    ReviewContents contents{
-        .command = args.command_line, .stance = args.stance(), .most_triangles = args.most_triangles};
-    contents.measures = place_measures(args.places, command, "--quantity", args.quantities);
-    contents.quantities = measured_quantities(args, contents.measures);
     const Session session = open_session(args, summary);
     notice_if_off_map(args, session.map, "--bounds", options.bounds);
     notice_about_area(args, session.map, options.area);
@@ -108,29 +169,18 @@ Ending run_review(const ReviewArgs& args, const CLI::App& command, Summary& summ
     notices_about_stance(args, command, session.robot);
     options.offset = choose_offset(args, options.offset, session.robot, summary);
     require_above_ground(session.robot, options.offset);
-    options.step = command.count("--raster") > 0 ? parse_positive("--raster", args.step)
-                                                 : default_step(session.map, options, 500);
-    require_raster_memory(args, session.map, options);
-    read_lists(args, contents);
-    contents.floors = floors_of(session.map);
-    summary.lap("load");
-    if (args.is_settled() && (!args.no_islands || !contents.pairs.empty()))
-        contents.graph = find_islands(args, args.reach, session, summary, "review", !contents.pairs.empty());
-    add_rasters(args, session, options, contents);
-    summary.lap("query");
-    write_output(args, args.out, [&](const auto& sink) {
-        write_review(*session.judge, contents, sink,
-                     {.threads = args.threads, .progress = progress_bar(args, "review")});
-    });
-    summary.lap("write");
-    VerdictCounts counts;
-    std::uint64_t exact_checks = 0;
-    for (const RasterResult& result : contents.rasters) {
-        counts += result.counts;
-        exact_checks += result.exact_checks;
+    ReviewContents contents = contents_of(args, command, session, options, summary);
+    const RunOptions run{.threads = args.threads, .progress = progress_bar(args, "review")};
+    if (args.host->wants_update) {
+        keep(args, FoundUpdate{review_pack(*session.judge, contents, run)});
+    } else if (args.serve) {
+        serve(args, command, session, contents);
+    } else {
+        write_output(args, args.out, [&](const auto& sink) { write_review(*session.judge, contents, sink, run); });
     }
-    summary.set_verdicts(counts, exact_checks);
-    summary.extra.insert(summary.extra.begin(), args.out);
+    summary.lap("write");
+    summarize(contents, summary);
+    if (!args.out.empty()) summary.extra.insert(summary.extra.begin(), args.out);
     return {};
 }
 
@@ -144,8 +194,10 @@ void add_review(CLI::App& app, const std::string& command_line, ChosenCommand& c
                                             "A page that shows the world, the verdicts and their reasons in 3D");
     add_map_and_robot(command, *args);
     command.add_option("--out,-o", args->out, "HTML file to write; a browser opens it (- for standard output)")
-        ->required()
         ->check(not_empty());
+    command.add_flag("--serve", args->serve,
+                     "Serve the page on this machine, in place of a file: limits and regions can be changed there");
+    command.add_option("--port", args->port, "Port of --serve (default: any free one)")->check(CLI::Range(1, 65535));
     command.add_option("--spawns", args->spawns,
                        "CSV file of poses to show; may be given several times (- for standard input)");
     command.add_option(
@@ -181,7 +233,9 @@ void add_review(CLI::App& app, const std::string& command_line, ChosenCommand& c
                        "map's)");
     add_robot_and_run(command, *args);
     add_allow_empty(command, *args);
-    command.footer("Example:\n  spawnfield review /tmp/training --robot box:0.99,0.67,0.39 -o /tmp/review.html");
+    command.footer(
+        "Example:\n  spawnfield review /tmp/training --robot box:0.99,0.67,0.39 -o /tmp/review.html\n"
+        "  spawnfield review /tmp/training --robot box:0.99,0.67,0.39 --serve");
     set_work(command, args, chosen, run_review);
 }
 
