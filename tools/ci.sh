@@ -39,6 +39,7 @@ tsan() {
 
 step dependencies tools/install-dependencies.sh --tests
 step python tools/test-python.sh
+step web tools/build-web.sh
 step format tools/format.sh --check
 step layers tools/check-layers.py
 step dev golden dev -DCMAKE_CXX_FLAGS_DEBUG=  # without debug information, to save time

@@ -5,6 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 tools/install-dependencies.sh --package
+tools/build-web.sh || echo "package.sh: there is no review page (see above), so \`spawnfield review\` only says so" >&2
 if [ -z "${SOURCE_DATE_EPOCH:-}" ] && SOURCE_DATE_EPOCH=$(git log -1 --format=%ct 2>/dev/null); then
   export SOURCE_DATE_EPOCH
 fi

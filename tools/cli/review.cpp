@@ -92,7 +92,8 @@ void add_rasters(const ReviewArgs& args, const Session& session, RasterOptions o
 /// Throws ArgumentError for options that do not go together.
 void check_options(const ReviewArgs& args, const CLI::App& command)
 {
-    if (!args.serve && args.out.empty()) throw ArgumentError("--out is required, or --serve");
+    const bool makes_file = !args.serve && !args.host->wants_update;
+    if (makes_file && args.out.empty()) throw ArgumentError("--out is required, or --serve");
     if (args.serve) refuse(command, {"--out"}, "and --serve do not go together: the page is in the browser then");
     if (!args.serve) refuse(command, {"--port"}, "is only for --serve");
     if (args.is_settled()) return;

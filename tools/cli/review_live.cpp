@@ -200,7 +200,7 @@ private:
         return robot;
     }
 
-    /// Runs a command, with these inputs besides the map and the robot.
+    /// Runs a command that writes nothing, with these inputs besides the map and the robot.
     Result run(std::vector<std::string> words, const std::map<std::string, std::any>& inputs = {}) const
     {
         PageHost host(*review_.args.host);
@@ -247,17 +247,19 @@ private:
 
     Result layers(const Json& options) const
     {
-        std::vector<std::string> words = command("review", options, For::Layers);
-        words.insert(words.end(), {"-o", "review.html"});
-        return run(std::move(words));
+        Result out = run(command("review", options, For::Layers));
+        out.words.insert(out.words.end(), {"-o", "review.html"});
+        return out;
     }
 
     /// Returns an update with these poses, and the command that made them.
     Result judged(const Json& options, std::shared_ptr<const PoseTable> poses) const
     {
         std::vector<std::string> words = command("review", options, For::All);
-        words.insert(words.end(), {"--spawns", "spawns.csv", "-o", "review.html"});
-        return run(std::move(words), {{"spawns.csv", std::move(poses)}});
+        words.insert(words.end(), {"--spawns", "spawns.csv"});
+        Result out = run(std::move(words), {{"spawns.csv", std::move(poses)}});
+        out.words.insert(out.words.end(), {"-o", "review.html"});
+        return out;
     }
 
     static std::shared_ptr<const PoseTable> table_of(const std::string& csv)
@@ -271,13 +273,12 @@ private:
 
     Result spawns(const Json& options) const
     {
-        std::vector<std::string> words = command("sample", options, For::Spawns);
-        words.insert(words.end(), {"-o", "spawns.csv"});
-        Result sampled = run(std::move(words));
+        Result sampled = run(command("sample", options, For::Spawns));
         const auto* const found = std::any_cast<std::shared_ptr<const FoundSpawns>>(&sampled.found);
         if (found == nullptr) throw Refused{"no spawns were found"};
         Result out = judged(options, table_of(spawns_csv((*found)->list)));
         out.words = std::move(sampled.words);
+        out.words.insert(out.words.end(), {"-o", "spawns.csv"});
         out.seconds = sampled.seconds;
         out.notices = std::move(sampled.notices);
         return out;
