@@ -167,6 +167,8 @@ LayerColumns raster_columns(const RasterResult& raster, const HeightScale& heigh
         out.z.push_back(heights.above(at.z));
         out.verdict.push_back(std::uint8_t(at.verdict));
         ++out.counts[at.verdict];
+        out.ground.push_back(
+            heights.nearest(raster.rests.empty() ? at.z - raster.offset : raster.rests[pose].layer_height));
         if (raster.rests.empty()) continue;
         const RasterRest& rest = raster.rests[pose];
         out.roll.push_back(rounded_angle(rest.roll));
@@ -218,11 +220,13 @@ Json add_layer(PackWriter& pack, const Judge& judge, const RasterResult& raster,
         {"cell", delta(pack, columns.cell)},
         {"z", delta(pack, columns.z)},
         {"ground", delta(pack, columns.ground)},
-        {"verdict", delta(pack, columns.verdict)},
-        {"hit", delta(pack, columns.hit)},
-        {"reason", delta(pack, columns.reasons.indices())},
-        {"reasons", columns.reasons.texts()},
-        {"reason_numbers", pack.text(columns.reasons.numbers())}};
+        {"verdict", delta(pack, columns.verdict)}};
+    if (!contents.is_update) {
+        out["hit"] = delta(pack, columns.hit);
+        out["reason"] = delta(pack, columns.reasons.indices());
+        out["reasons"] = columns.reasons.texts();
+        out["reason_numbers"] = pack.text(columns.reasons.numbers());
+    }
     Json quantities = Json::array();
     if (is_settled) {
         out["roll"] = delta(pack, columns.roll);

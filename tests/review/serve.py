@@ -93,8 +93,10 @@ def tries_queries(page):
     check("all spawns are valid", spawns["spawns"][0]["verdicts"] == [valid] * 7)
     check("the command is sample's", spawns["command"].startswith("spawnfield sample map "))
 
-    pose = page.pack("pose", {"options": {}, "pose": [1.67, -3.01, 0.5, 0, 0, 0]})["spawns"][0]
-    check("a pose has its reason", pose["reasons"] == ["off_terrain: the ground is large_ball"])
+    status, answer = page.query("pose", {"options": {}, "pose": [1.67, -3.01, 0.5, 0, 0, 0]})
+    pose = json.loads(answer)
+    check("a pose has its reason", status == 200 and pose["verdict"] == "off_terrain" and
+          pose["reason"] == "off_terrain: the ground is large_ball")
 
 
 def refuses(page):

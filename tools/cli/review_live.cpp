@@ -62,9 +62,9 @@ Json value_of(const Control& control, const CLI::App& command)
 {
     const CLI::Option* const option = command.get_option_no_throw(control.option);
     const bool is_given = option != nullptr && option->count() > 0;
-    if (std::string_view(control.type) == "regions") return is_given ? Json(option->results()) : Json::array();
     const std::string text = is_given ? option->results().front() : control.value;
     const std::string_view type = control.type;
+    if (type == "regions") return text.starts_with('{') ? text : "";  // the page draws only GeoJSON
     if (type != "number" && type != "integer") return text;
     double number = 0;
     return CLI::detail::lexical_cast(text, number) ? Json(number) : Json();
@@ -136,7 +136,7 @@ public:
             const Json body = parsed(request.body);
             if (request.path == "layers") return pack_of(layers(body));
             if (request.path == "spawns") return pack_of(spawns(body));
-            if (request.path == "pose") return pack_of(pose(body));
+            if (request.path == "pose") return pose_of(pose(body));
         } catch (const Refused& refused) {
             return {400, "application/json", text_of({{"message", refused.message}})};
         }
@@ -295,17 +295,29 @@ private:
         return judged(body.value("options", Json::object()), table_of("x,y,z,roll,pitch,yaw\n" + row + "\n"));
     }
 
+    static const std::string& pack_in(const Result& result)
+    {
+        const auto* const update = std::any_cast<std::shared_ptr<const FoundUpdate>>(&result.found);
+        if (update == nullptr) throw Refused{"nothing was found"};
+        return (*update)->pack;
+    }
+
+    /// A pack begins with a mark, the length of its JSON text, and this text.
+    static constexpr std::size_t mark = 8, begin = 12;
+    static std::uint32_t json_length(const std::string& pack)
+    {
+        std::uint32_t out = 0;
+        std::memcpy(&out, pack.data() + mark, sizeof out);
+        return out;
+    }
+    static Json json_in(const std::string& pack) { return Json::parse(pack.substr(begin, json_length(pack))); }
+
     /// Returns the pack that was found. Its JSON also gets the command line that makes the same, the seconds, and the
     /// notices.
     static WebAnswer pack_of(const Result& result)
     {
-        const auto* const update = std::any_cast<std::shared_ptr<const FoundUpdate>>(&result.found);
-        if (update == nullptr) throw Refused{"nothing was found"};
-        const std::string& pack = (*update)->pack;
-        constexpr std::size_t mark = 8, begin = 12;  // the length of the JSON text is between them
-        std::uint32_t old_length = 0;
-        std::memcpy(&old_length, pack.data() + mark, sizeof old_length);
-        Json head = Json::parse(pack.substr(begin, old_length));
+        const std::string& pack = pack_in(result);
+        Json head = json_in(pack);
         head["command"] = shell_line(result.words);
         head["seconds"] = result.seconds;
         head["notices"] = result.notices;
@@ -313,7 +325,25 @@ private:
         const auto length = std::uint32_t(text.size());
         return {200, "application/octet-stream",
                 pack.substr(0, mark) + std::string(reinterpret_cast<const char*>(&length), sizeof length) + text +
-                    pack.substr(begin + old_length)};
+                    pack.substr(begin + json_length(pack))};
+    }
+
+    /// Returns what an update says about its only pose.
+    WebAnswer pose_of(const Result& result) const
+    {
+        const Json all = json_in(pack_in(result)), list = all.at("spawns").at(0);
+        const std::vector<Part>& parts = review_.map->geometry.parts();
+        const std::size_t hit = list.at("hits").at(0);
+        Json out{{"verdict", to_string(Verdict(list.at("verdicts").at(0).get<int>()))},
+                 {"reason", list.at("reasons").at(0)},
+                 {"hit", hit == 0              ? Json()
+                         : hit <= parts.size() ? Json(parts[hit - 1].name)
+                                               : Json("occupancy")}};
+        for (const auto& [from, to] :
+             {std::pair("poses", "pose"), std::pair("tilt", "tilt"), std::pair("margin", "margin"),
+              std::pair("clearance", "clearance"), std::pair("contacts", "contacts")})
+            out[to] = list.at(from).at(0);
+        return {200, "application/json", text_of(out)};
     }
 
     const LiveReview& review_;
