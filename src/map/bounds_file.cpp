@@ -24,6 +24,15 @@ bool are_halved(const std::vector<TileLevel>& levels)
     return true;
 }
 
+/// Returns whether numbers of cells fit into 32 bits, for places and robots of up to 1e5 m.
+bool is_plausible(const SolidBounds::Impl& impl)
+{
+    constexpr double least_cell = 1e-4, farthest = 1e8;                      // m
+    const auto is_place = [](double x) { return std::abs(x) <= farthest; };  // not NaN
+    const bool has_cells = impl.levels().empty() || impl.levels()[0].cell >= least_cell;
+    return has_cells && is_place(impl.x0) && is_place(impl.y0);
+}
+
 }  // namespace
 
 ListedFile write_bounds(const std::filesystem::path& file, const SolidBounds& bounds)
@@ -47,8 +56,7 @@ SolidBounds open_bounds(const std::filesystem::path& file, const std::string& he
         impl->is_whole = head.get<std::uint32_t>() != 0;
         return get_levels(head, BoundsTile::side);
     });
-    if (!are_halved(impl->levels()) || !std::isfinite(impl->x0) || !std::isfinite(impl->y0))
-        impl->tiles.fail_inconsistent();
+    if (!are_halved(impl->levels()) || !is_plausible(*impl)) impl->tiles.fail_inconsistent();
     return SolidBounds(std::move(impl));
 }
 
