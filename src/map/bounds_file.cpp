@@ -24,10 +24,10 @@ bool are_halved(const std::vector<TileLevel>& levels)
     return true;
 }
 
-/// Returns whether numbers of cells fit into 32 bits, for places and robots of up to 1e5 m.
+/// Returns whether numbers of cells of robots fit into 32 bits.
 bool is_plausible(const SolidBounds::Impl& impl)
 {
-    constexpr double least_cell = 1e-4, farthest = 1e8;                      // m
+    constexpr double least_cell = 1e-6, farthest = 1e9;                      // m
     const auto is_place = [](double x) { return std::abs(x) <= farthest; };  // not NaN
     const bool has_cells = impl.levels().empty() || impl.levels()[0].cell >= least_cell;
     return has_cells && is_place(impl.x0) && is_place(impl.y0);

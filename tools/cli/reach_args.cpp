@@ -204,20 +204,26 @@ std::string words_of(const IslandChoice& choice)
     return out;
 }
 
-void notice_about_islands(const QueryArgs& query, const IslandArgs& args, const Session& session, const SpawnList& list)
+bool are_islands_quick(const QueryArgs& query, const ReachArgs& args, const Session& session)
 {
     // A graph of so many columns, and with so few triangles and primitives, mostly takes a fraction of a second.
     constexpr double small_map = 5000;
     constexpr std::uint64_t few_elements = 20000;
-    constexpr std::size_t examined = 1000;  // spawns
-    constexpr double small_island = 5;      // m2
     const ReachOptions options = reach_options(query, args);
+    if (std::filesystem::exists(kept_graph_file(*session.judge, options))) return true;
     const double step = *with_defaults(options, session.robot).step;
     const Vec3 size = session.map.bounds.max - session.map.bounds.min;
-    const bool is_kept = std::filesystem::exists(kept_graph_file(*session.judge, options));
     std::uint64_t elements = 0;
     for (const LabelCount& label : session.map.geometry.labels()) elements += label.triangles + label.primitives;
-    if (!is_kept && (size.x() * size.y() > small_map * step * step || elements > few_elements)) return;
+    return size.x() * size.y() <= small_map * step * step && elements <= few_elements;
+}
+
+void notice_about_islands(const QueryArgs& query, const IslandArgs& args, const Session& session, const SpawnList& list)
+{
+    constexpr std::size_t examined = 1000;  // spawns
+    constexpr double small_island = 5;      // m2
+    if (!are_islands_quick(query, args, session)) return;
+    const ReachOptions options = reach_options(query, args);
     const ReachGraph graph = kept_graph(*session.judge, options).graph;
     std::vector<Pose> poses;
     for (std::size_t i = 0; i < std::min(examined, list.spawns.size()); ++i)

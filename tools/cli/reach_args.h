@@ -49,6 +49,9 @@ IslandChoice choice_for(const Map& map, const QueryArgs& query, const IslandArgs
 /// Returns the islands that are selected, in words: "island largest, reachable from 1,2". Empty: all islands.
 std::string words_of(const IslandChoice& choice);
 
+/// Returns whether islands are found in about a second: the graph is kept in the map's folder, or small.
+bool are_islands_quick(const QueryArgs& query, const ReachArgs& args, const Session& session);
+
 /// Prints a notice if spawns that were drawn from all islands stand on more than one. Does nothing if the graph is not
 /// kept in the map's folder yet, and would take long.
 void notice_about_islands(const QueryArgs& query, const IslandArgs& args, const Session& session,

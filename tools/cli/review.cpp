@@ -36,7 +36,8 @@ struct ReviewArgs : QueryArgs {
     std::string command_line, out, bounds, yaw = "0", quantities = "clearance";
     double step = 0;
     int headings = 1;
-    bool no_islands = false, serve = false;
+    std::optional<bool> islands;  ///< no value: if they are found quickly
+    bool serve = false;
     int port = 0;
     std::size_t most_triangles = 1000000;
 };
@@ -101,6 +102,19 @@ void check_options(const ReviewArgs& args, const CLI::App& command)
     refuse(command, reach_option_names, "is only for settled robots; leave --stance level out");
 }
 
+bool wants_islands(const ReviewArgs& args, const Session& session)
+{
+    if (!args.is_settled()) return false;
+    if (!args.pairs.empty()) return true;
+    if (args.islands) return *args.islands;
+    const bool are_quick = are_islands_quick(args, args.reach, session);
+    if (!are_quick)
+        notice(args,
+               "the page shows no islands, because finding them may take minutes; --islands finds and keeps them, and "
+               "--no-islands silences this notice");
+    return are_quick;
+}
+
 /// Returns all that the page shows. An update has either rasters or poses.
 ReviewContents contents_of(const ReviewArgs& args, const CLI::App& command, const Session& session,
                            RasterOptions options, Summary& summary)
@@ -117,7 +131,7 @@ ReviewContents contents_of(const ReviewArgs& args, const CLI::App& command, cons
     summary.lap("load");
     if (!is_update) {
         contents.floors = floors_of(session.map);
-        if (args.is_settled() && (!args.no_islands || !contents.pairs.empty()))
+        if (wants_islands(args, session))
             contents.graph = find_islands(args, args.reach, session, summary, "review", !contents.pairs.empty());
     }
     if (is_update && !args.spawns.empty()) return contents;
@@ -216,8 +230,8 @@ void add_review(CLI::App& app, const std::string& command_line, ChosenCommand& c
         "--quantity", args->quantities,
         "What is measured of each valid pose: clearance, head_room, roughness, view, with commas between "
         "them; or an empty text. Settled poses also have tilt and margin (default clearance)");
-    command.add_flag("--no-islands", args->no_islands,
-                     "Do not find out where the robot can drive, which may take long");
+    command.add_flag("--islands,!--no-islands", args->islands,
+                     "Show where the robot can drive, also if finding that out takes long; or never");
     command
         .add_option("--triangles", args->most_triangles,
                     "A world with more triangles is simplified; verdicts stay exact (default 1000000)")
