@@ -1,0 +1,50 @@
+// What lies over the map: scale bar, axes with north, the place under the pointer.
+import { Vector3 } from 'three';
+import { byId, svg } from './dom.js';
+import { niceBelow, rounded } from './numbers.js';
+
+const LONGEST_BAR = 150;  // CSS pixels
+const AXES = [['x', new Vector3(1, 0, 0), '#d55e00'], ['y', new Vector3(0, 1, 0), '#009e73'],
+              ['z', new Vector3(0, 0, 1), '#0072b2']];
+
+export function createOverlay(view) {
+  const bar = byId('scale-bar');
+  const drawing = svg('svg', { viewBox: '-48 -48 96 96', width: '100%', height: '100%', role: 'img',
+                               'aria-label': 'Axes: x forward or east, y left or north, z up' });
+  byId('gizmo').append(drawing);
+  const axes = AXES.map(([name, direction, color]) => {
+    const line = svg('line', { stroke: color, 'stroke-width': 3, 'stroke-linecap': 'round' });
+    const label = svg('text', { fill: color, 'text-anchor': 'middle', 'dominant-baseline': 'middle' }, name);
+    return { direction, line, label };
+  });
+  const north = svg('path', { d: 'M0 -47 L5 -37 L0 -40 L-5 -37 Z', fill: 'currentColor' });
+  const northText = svg('text', { fill: 'currentColor', 'text-anchor': 'middle', 'dominant-baseline': 'middle' }, 'N');
+  drawing.append(svg('circle', { r: 40, fill: 'none', stroke: 'currentColor', 'stroke-opacity': 0.25 }), north, northText);
+
+  return function update() {
+    const metres = niceBelow(LONGEST_BAR * view.metresPerPixel());
+    bar.style.width = `${metres / view.metresPerPixel()}px`;
+    const text = metres >= 1000 ? `${rounded(metres / 1000)} km` : metres < 0.01 ? `${rounded(metres * 1000)} mm`
+      : metres < 1 ? `${rounded(metres * 100)} cm` : `${rounded(metres)} m`;
+    bar.firstElementChild.textContent = text;
+    bar.setAttribute('aria-label', `Scale: this bar is ${text} long`);
+
+    const turn = view.camera.quaternion.clone().invert();
+    const ends = axes.map((axis) => ({ ...axis, end: axis.direction.clone().applyQuaternion(turn) }))
+      .sort((a, b) => a.end.z - b.end.z);
+    for (const { line, label, end } of ends) {
+      line.setAttribute('x2', 24 * end.x);
+      line.setAttribute('y2', -24 * end.y);
+      label.setAttribute('x', 32 * end.x);
+      label.setAttribute('y', -32 * end.y);
+      label.setAttribute('visibility', Math.hypot(end.x, end.y) < 0.15 ? 'hidden' : 'visible');
+      drawing.append(line, label);
+    }
+    const up = new Vector3(0, 1, 0).applyQuaternion(turn);
+    const angle = (Math.atan2(up.x, up.y) * 180) / Math.PI;
+    north.setAttribute('transform', `rotate(${angle})`);
+    northText.setAttribute('x', 40 * Math.sin((angle * Math.PI) / 180));
+    northText.setAttribute('y', -40 * Math.cos((angle * Math.PI) / 180));
+    north.setAttribute('visibility', 'hidden');
+  };
+}
