@@ -73,7 +73,7 @@ export function createCameraViews(view) {
     },
     isometric(place = view.center.toArray(), radius = view.radius) {
       view.setTop(false);
-      flyTo(place, radius * 0.82, ISOMETRIC);
+      flyTo(place, radius * 0.93, ISOMETRIC);
     },
     /** Moves the target by shares of the view: to the right and ahead. */
     pan(right, ahead) {

@@ -88,7 +88,7 @@ export function createLegend({ verdicts, islands, labels, layers, heights, actio
     actions.setPatterns(patternsOn);
     fillList();
   });
-  const opacity = element('input', { type: 'range', id: 'opacity', min: 0.2, max: 1, step: 0.05, value: 0.9 });
+  const opacity = element('input', { type: 'range', id: 'opacity', min: 0.2, max: 1, step: 0.05, value: 0.75 });
   opacity.addEventListener('input', () => actions.setOpacity(Number(opacity.value)));
   const labelBoxes = labels.map((label) => {
     const box = element('input', { type: 'checkbox', 'data-label': label });

@@ -26,7 +26,7 @@ const robotFragment = /* glsl */ `
   ${inkGlsl}
   void main() {
     if (place.z > cut) discard;
-    color = vec4(inked(palette[kind].rgb, kind) * (shade(place, cameraPosition - place) * 0.9 + 0.1), 1.0);
+    color = vec4(inked(palette[kind].rgb, kind) * (1.6 * shade(place, cameraPosition - place) - 0.45), 1.0);
   }
 `;
 
@@ -38,7 +38,7 @@ const markerVertex = /* glsl */ `
   void main() {
     verdict = int(look.x + 0.5);
     shape = int(look.y + 0.5);
-    gl_PointSize = (shape == 4 ? 34.0 : shape == 0 ? 11.0 : 15.0) * pixelRatio;
+    gl_PointSize = (shape == 4 ? 34.0 : shape == 0 ? 12.0 : 17.0) * pixelRatio;
     gl_Position = position.z > cut ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * viewMatrix * vec4(position, 1.0);
   }
 `;
@@ -61,7 +61,8 @@ const markerFragment = /* glsl */ `
     float cross_ = min(abs(at.x - at.y), abs(at.x + at.y));
     float light = step(0.5, dot(base, vec3(0.299, 0.587, 0.114)));
     vec3 ink = vec3(1.0 - light);
-    if (distance > 0.78) base = vec3(0.05);
+    if (distance > 0.86) base = vec3(1.0);
+    else if (distance > 0.66) base = vec3(0.05);
     else if (shape == 1 && cross_ < 0.22) base = ink;
     else if (shape == 2 && min(abs(at.x), abs(at.y)) < 0.12 && max(abs(at.x), abs(at.y)) < 0.5) base = vec3(1.0);
     else if (shape == 3 && abs(at.y) < 0.12 && abs(at.x) < 0.5) base = vec3(1.0);

@@ -68,7 +68,8 @@ const fragmentShader = /* glsl */ `
     base = mode == 0 ? inked(base, verdict) : base;
     vec2 width = fwidth(inside);
     vec2 edge = min(inside, 1.0 - inside) / width;
-    float line = max(width.x, width.y) < 0.09 && min(edge.x, edge.y) < 0.9 ? 0.86 : 1.0;
+    // Lines between the poses appear gradually where a square has more than 11 pixels.
+    float line = min(edge.x, edge.y) < 0.9 ? 1.0 - 0.16 * smoothstep(0.09, 0.045, max(width.x, width.y)) : 1.0;
     color = vec4(base * light * line, opacity);
   }
 `;
@@ -93,7 +94,7 @@ export function createVerdictLayer(shared, origin) {
   const uniforms = {
     ...shared, cols: { value: 1 }, corner: { value: new Vector2() }, spacing: { value: 1 }, z0: { value: 0 },
     unit: { value: 1 }, lift: { value: 0 }, mode: { value: MODES.verdict }, range: { value: new Vector2(0, 1) },
-    opacity: { value: 0.9 }, ramp: { value: rampTexture() }, noValue: { value: new Vector3(...rgb(NO_VALUE_COLOR)) },
+    opacity: { value: 0.75 }, ramp: { value: rampTexture() }, noValue: { value: new Vector3(...rgb(NO_VALUE_COLOR)) },
     islandColors: { value: [...ISLAND_COLORS, NO_ISLAND_COLOR].map((color) => new Vector3(...rgb(color))) },
   };
   const material = new ShaderMaterial({
