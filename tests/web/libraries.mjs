@@ -3,5 +3,6 @@ import { createRequire } from 'node:module';
 
 const require = createRequire(new URL('../../web/package.json', import.meta.url));
 export const { zlibSync } = require('fflate');
-export const { MeshoptEncoder } = await import(require.resolve('meshoptimizer/meshopt_encoder.module.js'));
+export const MeshoptEncoder = require('meshoptimizer/meshopt_encoder.js');
+export const esbuild = require('esbuild');
 export const { chromium } = require('playwright-core');

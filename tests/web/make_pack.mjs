@@ -95,7 +95,7 @@ export const PARTS = [
 ];
 
 function judge(x, y, level, turned) {
-  const reach = turned ? 0.36 : 0.46;
+  const reach = turned ? 0.9 : 0.46;
   if (level === 1) {
     const edge = Math.min(x - DECK.x[0], DECK.x[1] - x, y - DECK.y[0], DECK.y[1] - y);
     return edge < 0.3 ? ['unstable', 0, 1, ['-0.12']] : ['valid', 0, 0, []];

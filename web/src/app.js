@@ -383,12 +383,14 @@ async function openPage(scriptText, api) {
   });
   setUpSheet(view);
   toolbar.fill(json, licences);
+  view.beforeRender(() => verdictLayer.aim(view));
   view.onRender(overlay);
   view.onRender(measure.update);
   view.resize();
   showLayer(0);
   showSpawns(0);
   startView(cameraViews, view);
+  const decodeMilliseconds = performance.now();
   view.renderNow();
   readOnePixel(view);
   byId('loading').remove();
@@ -410,7 +412,7 @@ async function openPage(scriptText, api) {
     target: () => view.controls.target.toArray().map((value, axis) => value + origin[axis]),
     statistics: () => ({
       drawCalls: view.renderer.info.render.calls, triangles: view.renderer.info.render.triangles,
-      bytesUploaded: view.uploads.bytes, loadMilliseconds, frameMilliseconds: api.turn(5),
+      bytesUploaded: view.uploads.bytes, loadMilliseconds, decodeMilliseconds, frameMilliseconds: api.turn(5),
     }),
     /** Turns the view by some pictures and returns the mean milliseconds of one. */
     turn(pictures) {
@@ -421,6 +423,15 @@ async function openPage(scriptText, api) {
         readOnePixel(view);
       }
       return (performance.now() - began) / pictures;
+    },
+    /** Draws, and returns [red, green, blue] of a CSS pixel of the canvas. */
+    pixelAt(x, y) {
+      view.renderNow();
+      const gl = view.renderer.getContext();
+      const color = new Uint8Array(4);
+      const ratio = shared.pixelRatio.value;
+      gl.readPixels(Math.round(x * ratio), Math.round((view.canvas.clientHeight - y) * ratio), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, color);
+      return [...color.subarray(0, 3)];
     },
     runs: () => live?.runs ?? [],
   });

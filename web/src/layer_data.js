@@ -172,15 +172,14 @@ function* ringAround(col, row, ring) {
 
 /**
  * Returns for each pose the slope of the ground in x and y from the neighbouring poses, as two bytes: 128 + 64 · slope.
- * The squares of the layer lie on the ground with it. Slopes beyond ±2 count as steps, not as slopes.
+ * The squares of the layer lie on the ground with it. `heights` are drawnValues(layer). Slopes beyond ±2 count as steps, not as slopes.
  */
-export function groundSlopes(layer) {
+export function groundSlopes(layer, heights) {
   const { grid, cell, count } = layer;
   const { cols, step } = grid;
   const slopes = new Uint8Array(2 * count).fill(128);
   const starts = layer.columnStarts();
   if (!starts) return slopes;
-  const heights = drawnValues(layer);
   const reach = (2 * step) / layer.unit;
   const rise = (pose, column) => {  // of the neighbour nearest in height, NaN without one
     let least = NaN;

@@ -24,6 +24,7 @@ export function createMeasure(view, origin, changed) {
       line = createLines([{ places, color: '#d81b60' }], origin, { width: 3, onTop: true });
       view.scene.add(line);
     }
+    label.hidden = places.length === 0;
     label.textContent = places.length === 2 ? distanceText(...places) : places.length === 1 ? 'Click the second place' : '';
     view.requestRender();
   }

@@ -4,8 +4,8 @@ import { byId, svg } from './dom.js';
 import { niceBelow, rounded } from './numbers.js';
 
 const LONGEST_BAR = 150;  // CSS pixels
-const AXES = [['x', new Vector3(1, 0, 0), '#d55e00'], ['y', new Vector3(0, 1, 0), '#009e73'],
-              ['z', new Vector3(0, 0, 1), '#0072b2']];
+const AXES = [['x', new Vector3(1, 0, 0), '#e0703a'], ['y', new Vector3(0, 1, 0), '#12a57a'],
+              ['z', new Vector3(0, 0, 1), '#3391d6']];
 
 export function createOverlay(view) {
   const bar = byId('scale-bar');

@@ -1,6 +1,6 @@
 // The drawing surface: a renderer that draws only when something changed, two cameras and their controls.
 import {
-  ColorManagement, LinearSRGBColorSpace, MOUSE, OrthographicCamera, PerspectiveCamera, Raycaster, Scene, TOUCH, Vector2,
+  Box3, ColorManagement, LinearSRGBColorSpace, MOUSE, OrthographicCamera, PerspectiveCamera, Raycaster, Scene, TOUCH, Vector2,
   Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
@@ -19,6 +19,7 @@ export function createView(canvas, bounds, shared) {
   renderer.info.autoReset = false;
   countUploads(renderer.getContext(), uploads);
   const scene = new Scene();
+  const box = new Box3(new Vector3(...bounds.min), new Vector3(...bounds.max));
   const center = new Vector3(...bounds.min).add(new Vector3(...bounds.max)).multiplyScalar(0.5);
   const radius = Math.max(new Vector3(...bounds.min).distanceTo(new Vector3(...bounds.max)) / 2, 0.5);
   const perspective = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.1, 1000);
@@ -36,6 +37,7 @@ export function createView(canvas, bounds, shared) {
   let camera = perspective;
   let asked = false;
   const watchers = [];
+  const preparers = [];
   const raycaster = new Raycaster();
 
   function draw() {
@@ -51,6 +53,7 @@ export function createView(canvas, bounds, shared) {
       camera.far = camera.position.distanceTo(center) + radius * 4;
     }
     camera.updateProjectionMatrix();
+    preparers.forEach((prepare) => prepare());
     renderer.info.reset();
     renderer.render(scene, camera);
     watchers.forEach((watch) => watch());
@@ -66,6 +69,7 @@ export function createView(canvas, bounds, shared) {
       requestAnimationFrame(draw);
     },
     renderNow: draw,
+    beforeRender: (prepare) => preparers.push(prepare),
     onRender: (watch) => watchers.push(watch),
     resize() {
       const { clientWidth: width, clientHeight: height } = canvas.parentElement;
@@ -112,6 +116,17 @@ export function createView(canvas, bounds, shared) {
       if (view.isTop) return (orthographic.top - orthographic.bottom) / orthographic.zoom / height;
       const distance = camera.position.distanceTo(controls.target);
       return (2 * distance * Math.tan((FIELD_OF_VIEW * Math.PI) / 360)) / height;
+    },
+    /** Returns the device pixels of a metre at the depth of 1 m; in the top view, at each depth. */
+    pixelsAtUnitDepth() {
+      const pixels = canvas.clientHeight * shared.pixelRatio.value;
+      if (view.isTop) return pixels / ((orthographic.top - orthographic.bottom) / orthographic.zoom);
+      return pixels / (2 * Math.tan((FIELD_OF_VIEW * Math.PI) / 360));
+    },
+    /** Returns the device pixels of a metre at the place of the world that is nearest to the camera. */
+    largestScale() {
+      if (view.isTop) return view.pixelsAtUnitDepth();
+      return view.pixelsAtUnitDepth() / Math.max(box.distanceToPoint(camera.position), 0.01);
     },
     /** Returns {x, y, visible} of a place relative to the origin, in CSS pixels of the canvas. */
     project(place) {
