@@ -66,7 +66,7 @@ test('a change of a setting runs the query and shows the new layer', async () =>
 });
 
 test('one request runs at a time, and later changes replace waiting ones', async () => {
-  program.delay = 400;
+  program.delay = 1200;
   const before = program.asked.length;
   for (const degrees of ['30', '31', '32']) {
     await page.fill('[data-option="--max-slope"]', degrees);

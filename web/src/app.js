@@ -29,6 +29,7 @@ import { grouped, percent, withUnit } from './numbers.js';
 
 const UNCUT = 1e30;
 const CLICK_PIXELS = 6;
+const MANY_THINGS = 600000;  // triangles and poses
 
 /** Starts the page. `window.spawnfield` is for tests and for the console; docs: web/README.md. */
 export function startPage(scriptText) {
@@ -94,7 +95,7 @@ async function openPage(scriptText, api) {
   const shared = sharedUniforms(json.verdicts);
   const bounds = { min: local(json.map.bounds.min), max: local(json.map.bounds.max) };
   const heights = [json.map.bounds.min[2], json.map.bounds.max[2]];
-  const view = createView(byId('canvas'), bounds, shared);
+  const view = createView(byId('canvas'), bounds, shared, drawnThings(json) > MANY_THINGS);
   const world = createWorld(pack, shared, [bounds.min[2], bounds.max[2]]);
   const verdictLayer = createVerdictLayer(shared, origin);
   view.scene.add(world.group, verdictLayer.object);
@@ -435,6 +436,10 @@ async function openPage(scriptText, api) {
     },
     runs: () => live?.runs ?? [],
   });
+}
+
+function drawnThings(json) {
+  return json.world.meshes.reduce((sum, { indices }) => sum + indices.count / 3, 0) + (json.layers?.[0]?.count ?? 0);
 }
 
 const lift = ([x, y, z]) => [x, y, z + 0.05];

@@ -151,7 +151,7 @@ export function createLive(live, firstCommand, actions) {
 
   const groups = [...new Set(controls.map(({ group }) => group ?? 'Options'))];
   const form = element('form', { id: 'live-form', autocomplete: 'off', on: { submit: (event) => event.preventDefault() } },
-    ...groups.map((group, at) => element('details', { open: at < 3 }, element('summary', { text: group }),
+    ...groups.map((group, at) => element('details', { open: at < 3 || controls.length <= 16 }, element('summary', { text: group }),
       ...controls.filter((control) => (control.group ?? 'Options') === group).map((control) =>
         controlForm(control, (value) => change(control, value), (set) => forms.set(control.option, set), actions)))));
 

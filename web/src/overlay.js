@@ -17,9 +17,8 @@ export function createOverlay(view) {
     const label = svg('text', { fill: color, 'text-anchor': 'middle', 'dominant-baseline': 'middle' }, name);
     return { direction, line, label };
   });
-  const north = svg('path', { d: 'M0 -47 L5 -37 L0 -40 L-5 -37 Z', fill: 'currentColor' });
   const northText = svg('text', { fill: 'currentColor', 'text-anchor': 'middle', 'dominant-baseline': 'middle' }, 'N');
-  drawing.append(svg('circle', { r: 40, fill: 'none', stroke: 'currentColor', 'stroke-opacity': 0.25 }), north, northText);
+  drawing.append(svg('circle', { r: 36, fill: 'none', stroke: 'currentColor', 'stroke-opacity': 0.25 }), northText);
 
   return function update() {
     const metres = niceBelow(LONGEST_BAR * view.metresPerPixel());
@@ -33,18 +32,16 @@ export function createOverlay(view) {
     const ends = axes.map((axis) => ({ ...axis, end: axis.direction.clone().applyQuaternion(turn) }))
       .sort((a, b) => a.end.z - b.end.z);
     for (const { line, label, end } of ends) {
-      line.setAttribute('x2', 24 * end.x);
-      line.setAttribute('y2', -24 * end.y);
-      label.setAttribute('x', 32 * end.x);
-      label.setAttribute('y', -32 * end.y);
+      line.setAttribute('x2', 20 * end.x);
+      line.setAttribute('y2', -20 * end.y);
+      label.setAttribute('x', 28 * end.x);
+      label.setAttribute('y', -28 * end.y);
       label.setAttribute('visibility', Math.hypot(end.x, end.y) < 0.15 ? 'hidden' : 'visible');
       drawing.append(line, label);
     }
     const up = new Vector3(0, 1, 0).applyQuaternion(turn);
     const angle = (Math.atan2(up.x, up.y) * 180) / Math.PI;
-    north.setAttribute('transform', `rotate(${angle})`);
-    northText.setAttribute('x', 40 * Math.sin((angle * Math.PI) / 180));
-    northText.setAttribute('y', -40 * Math.cos((angle * Math.PI) / 180));
-    north.setAttribute('visibility', 'hidden');
+    northText.setAttribute('x', 42 * Math.sin((angle * Math.PI) / 180));
+    northText.setAttribute('y', -42 * Math.cos((angle * Math.PI) / 180));
   };
 }

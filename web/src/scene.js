@@ -11,10 +11,13 @@ ColorManagement.enabled = false;
 const FIELD_OF_VIEW = 45;
 const LARGEST_PIXEL_RATIO = 2;
 
-/** Returns the view of a canvas. `bounds` is {min, max} of the world, relative to the pack's origin. */
-export function createView(canvas, bounds, shared) {
+/**
+ * Returns the view of a canvas. `bounds` is {min, max} of the world, relative to the pack's origin. Large worlds are drawn
+ * without smooth edges, which would take twice as long.
+ */
+export function createView(canvas, bounds, shared, isLarge) {
   const uploads = { bytes: 0 };
-  const renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+  const renderer = new WebGLRenderer({ canvas, antialias: !isLarge, powerPreference: 'high-performance' });
   renderer.outputColorSpace = LinearSRGBColorSpace;
   renderer.info.autoReset = false;
   countUploads(renderer.getContext(), uploads);
@@ -130,6 +133,8 @@ export function createView(canvas, bounds, shared) {
     },
     /** Returns {x, y, visible} of a place relative to the origin, in CSS pixels of the canvas. */
     project(place) {
+      camera.updateMatrixWorld();
+      camera.updateProjectionMatrix();
       const seen = new Vector3(...place).project(camera);
       return { x: ((seen.x + 1) / 2) * canvas.clientWidth, y: ((1 - seen.y) / 2) * canvas.clientHeight,
                visible: Math.abs(seen.z) <= 1 };
