@@ -13,19 +13,14 @@ export function hitOf(json, hit) {
   return part ? { name: part.name, label: part.label, part: hit - 1 } : VOXEL;
 }
 
-const tiltOf = (roll, pitch) => Math.acos(Math.max(-1, Math.min(1, Math.cos(roll) * Math.cos(pitch))));
-
 /** Returns the answer for a pose of a layer. */
 export function layerAnswer(json, layer, pose) {
   const numbers = poseNumbers(layer, pose);
   const ground = layer.ground[pose] === NO_GROUND ? null : layer.z0 + layer.unit * layer.ground[pose];
-  const settled = layer.roll() !== null;
   const island = layer.island()?.[pose] ?? 0;
   const verdict = layer.verdict[pose];
   const quantities = layer.quantities.map((quantity) => ({ name: quantity.name, unit: quantity.unit,
                                                            value: quantityAt(quantity, pose) }));
-  if (settled && !quantities.some(({ name }) => name === 'tilt'))
-    quantities.unshift({ name: 'tilt', unit: 'rad', value: tiltOf(numbers.roll, numbers.pitch) });
   return {
     kind: 'layer', pose: [numbers.x, numbers.y, numbers.z, numbers.roll, numbers.pitch, numbers.yaw],
     verdict, verdictName: json.verdicts[verdict]?.name ?? '', words: json.verdicts[verdict]?.words ?? '',

@@ -1,5 +1,5 @@
 // The page: reads the pack, draws it, and connects the panels with the map.
-import { Color, Sphere } from 'three';
+import { Color } from 'three';
 import licences from 'licences';
 import { byId, element, notice, visibleText } from './dom.js';
 import { bytesFromBase64, PackError, readPack } from './pack.js';
@@ -93,18 +93,17 @@ async function openPage(scriptText, api) {
 
   // The map
   const shared = sharedUniforms(json.verdicts);
-  const bounds = { min: local(json.map.bounds.min), max: local(json.map.bounds.max) };
-  const heights = [json.map.bounds.min[2], json.map.bounds.max[2]];
+  const bounds = worldBounds(json);
+  const heights = [bounds.min[2] + origin[2], bounds.max[2] + origin[2]];
   const view = createView(byId('canvas'), bounds, shared, drawnThings(json) > MANY_THINGS);
   const world = createWorld(pack, shared, [bounds.min[2], bounds.max[2]]);
   const verdictLayer = createVerdictLayer(shared, origin);
   view.scene.add(world.group, verdictLayer.object);
-  const robot = robotGeometry(pack);
-  robot.computeBoundingSphere();
-  const robotRadius = Math.max(robot.boundingSphere?.radius ?? new Sphere().radius, 0.1);
+  let robot = robotGeometry(pack);
+  const robotRadius = Math.max(robot.boundingSphere.radius, 0.1);
   const cameraViews = createCameraViews(view);
   const picking = createPicking(world, json.robot.bounds, origin, scriptText);
-  const showSelection = createSelection(view, robot, shared, origin);
+  const showSelection = createSelection(view, () => robot, shared, origin);
   const overlay = createOverlay(view);
 
   const state = { layers: (json.layers ?? []).map((layer) => readLayer(pack, layer)), layerIndex: 0,
@@ -192,10 +191,11 @@ async function openPage(scriptText, api) {
     if (on) notice('Click the corners of the region. Enter or a double click ends it, Esc gives up.');
   });
   const live = json.live ? createLive(json.live, json.command, {
-    regionHeight: json.map.bounds.max[2], drawRegion: regions.begin, showRegions: regions.show,
+    regionHeight: heights[1], drawRegion: regions.begin, showRegions: regions.show,
     showLayers(answer) {
       state.layers.forEach(verdictLayer.forget);
       state.layers = answer.json.layers.map((layer) => readLayer(answer, layer));
+      if (answer.json.robot) changeRobot(answer);
       showLayer(Math.min(state.layerIndex, state.layers.length - 1));
       view.renderNow();
     },
@@ -232,13 +232,23 @@ async function openPage(scriptText, api) {
     view.requestRender();
   }
 
+  function changeRobot(answer) {
+    robot = robotGeometry(answer);
+    picking.setRobot(answer.json.robot.bounds);
+    drawSpawns();
+  }
+
   let spawnRobots = null;
   let spawnRefs = [];
-  function showSpawns(index) {
+  function drawSpawns() {
     discard(spawnRobots);
-    spawnRefs = state.spawns.flatMap((list, l) => list.poses.map((pose, i) => ({ pose, verdict: list.verdicts[i], list: l, index: i })));
     spawnRobots = createRobots(robot, spawnRefs, shared, origin);
     view.scene.add(spawnRobots);
+  }
+
+  function showSpawns(index) {
+    spawnRefs = state.spawns.flatMap((list, l) => list.poses.map((pose, i) => ({ pose, verdict: list.verdicts[i], list: l, index: i })));
+    drawSpawns();
     spawnList.show(state.spawns, Math.max(index, 0));
     drawMarkers();
     showFacts();
@@ -436,6 +446,16 @@ async function openPage(scriptText, api) {
     },
     runs: () => live?.runs ?? [],
   });
+}
+
+// Relative to the origin. A map without bounds in some direction has those of its meshes.
+function worldBounds({ map, world, origin }) {
+  const bound = (side, pick, ofMesh) => [0, 1, 2].map((axis) => {
+    const value = map.bounds[side][axis];
+    return Number.isFinite(value) ? value - origin[axis] : pick(...world.meshes.map((mesh) => ofMesh(mesh, axis)));
+  });
+  return { min: bound('min', Math.min, ({ offset }, axis) => offset[axis]),
+           max: bound('max', Math.max, ({ offset, scale }, axis) => offset[axis] + 65535 * scale) };
 }
 
 function drawnThings(json) {

@@ -33,9 +33,22 @@ export function readLayer(pack, json) {
     hasIslands: Boolean(json.island),
     quantities: (json.quantities ?? []).map((quantity) => ({ ...quantity, values: optional(quantity.values) })),
   };
+  if (json.roll && !layer.quantities.some(({ name }) => name === 'tilt')) layer.quantities.push(tiltQuantity(layer));
   layer.reasonOf = reasonReader(pack, json);
   layer.columnStarts = lazily(() => columnStarts(layer));
   return layer;
+}
+
+// The tilt follows from roll and pitch, so packs need not have it.
+function tiltQuantity(layer) {
+  const scale = Math.PI / (NO_QUANTITY - 1);
+  const values = lazily(() => {
+    const [roll, pitch] = [layer.roll(), layer.pitch()];
+    const angle = Math.PI / 32767;
+    return Uint16Array.from(roll, (value, pose) =>
+      Math.round(Math.acos(Math.cos(value * angle) * Math.cos(pitch[pose] * angle)) / scale));
+  });
+  return { name: 'tilt', unit: 'rad', scale, offset: 0, values };
 }
 
 function reasonReader(pack, json) {

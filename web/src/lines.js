@@ -38,6 +38,6 @@ export function discard(object) {
   if (!object) return;
   object.removeFromParent();
   object.geometry.dispose();
-  object.material.dispose();
+  object.traverse(({ material }) => material.dispose());
   object.dispose?.();
 }

@@ -11,11 +11,12 @@ import { poseMatrix } from './robot_shapes.js';
 export function createPicking(world, robotBounds, origin, scriptText) {
   let trees = null;
   const ready = treesOf(world.meshes, scriptText).then((made) => { trees = made; });
-  const box = new Box3(new Vector3(...robotBounds.min), new Vector3(...robotBounds.max)).expandByScalar(0.02);
+  let box = boxOf(robotBounds);
 
   return {
     ready,
     isReady: () => trees !== null,
+    setRobot(bounds) { box = boxOf(bounds); },
     /** Returns {place, part, label, distance} or null. Needs `ready`. */
     place(ray, cut) {
       if (!trees) return null;
@@ -46,6 +47,8 @@ export function createPicking(world, robotBounds, origin, scriptText) {
     },
   };
 }
+
+const boxOf = ({ min, max }) => new Box3(new Vector3(...min), new Vector3(...max)).expandByScalar(0.02);
 
 // The distances along a ray between which it is below the cut.
 function visibleRange(ray, cut) {

@@ -1,18 +1,27 @@
 // Robots in their own shape, coloured by verdict, and markers of constant size on the screen above them.
 import {
-  BufferAttribute, BufferGeometry, DoubleSide, Euler, GLSL3, InstancedBufferAttribute, InstancedMesh, Matrix4, Points,
+  BackSide, BufferAttribute, BufferGeometry, DoubleSide, Euler, GLSL3, InstancedBufferAttribute, InstancedMesh, Matrix4, Points,
   Quaternion, ShaderMaterial, Vector3,
 } from 'three';
 import { inkGlsl, shadeGlsl } from './shaders.js';
 
 const robotVertex = /* glsl */ `
   in float verdict;
+  uniform vec3 center;
+  uniform vec2 viewport;  // size of the picture in pixels
+  uniform float pixelRatio;
   out vec3 place;
   flat out int kind;
   void main() {
     place = (modelMatrix * instanceMatrix * vec4(position, 1.0)).xyz;
     kind = int(verdict + 0.5);
     gl_Position = projectionMatrix * viewMatrix * vec4(place, 1.0);
+    #ifdef OUTLINE
+      // Corners move outwards on the screen, so that a dark rim of constant width is seen around the robot.
+      vec4 middle = projectionMatrix * viewMatrix * modelMatrix * instanceMatrix * vec4(center, 1.0);
+      vec2 away = (gl_Position.xy / gl_Position.w - middle.xy / middle.w) * viewport;
+      gl_Position.xy += normalize(away + 1e-6) * 3.0 * pixelRatio / viewport * gl_Position.w;
+    #endif
   }
 `;
 
@@ -26,6 +35,10 @@ const robotFragment = /* glsl */ `
   ${inkGlsl}
   void main() {
     if (place.z > cut) discard;
+    #ifdef OUTLINE
+      color = vec4(0.07, 0.07, 0.07, 1.0);
+      return;
+    #endif
     color = vec4(inked(palette[kind].rgb, kind) * (1.6 * shade(place, cameraPosition - place) - 0.45), 1.0);
   }
 `;
@@ -85,23 +98,32 @@ export function robotGeometry(pack) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(pack.array(robot.positions), 3));
   geometry.setIndex(new BufferAttribute(pack.array(robot.indices), 1));
+  geometry.computeBoundingSphere();
   return geometry;
 }
 
-/** Returns one object for many robots: `robots` is an array of {pose, verdict}. One draw call. */
+/** Returns one object for many robots: `robots` is an array of {pose, verdict}. Two draw calls: shapes and their rims. */
 export function createRobots(geometry, robots, shared, origin) {
   const own = new BufferGeometry();
   // Copies, because three.js frees an attribute with the first geometry that has it.
   own.setAttribute('position', geometry.attributes.position.clone());
   own.setIndex(geometry.index.clone());
   own.setAttribute('verdict', new InstancedBufferAttribute(Float32Array.from(robots, (robot) => robot.verdict), 1));
-  const material = new ShaderMaterial({ glslVersion: GLSL3, vertexShader: robotVertex, fragmentShader: robotFragment,
-                                        uniforms: shared, side: DoubleSide });
-  const object = new InstancedMesh(own, material, Math.max(robots.length, 1));
+  own.computeBoundingBox();
+  const uniforms = { ...shared, center: { value: own.boundingBox.getCenter(new Vector3()) } };
+  const material = (settings) => new ShaderMaterial({ glslVersion: GLSL3, vertexShader: robotVertex,
+                                                      fragmentShader: robotFragment, uniforms, ...settings });
+  const object = new InstancedMesh(own, material({ side: DoubleSide }), Math.max(robots.length, 1));
   object.count = robots.length;
   robots.forEach(({ pose }, at) => object.setMatrixAt(at, poseMatrix(pose, origin)));
-  object.frustumCulled = false;
-  object.renderOrder = 3;
+  const rim = new InstancedMesh(own, material({ side: BackSide, defines: { OUTLINE: 1 } }), 1);
+  rim.instanceMatrix = object.instanceMatrix;
+  rim.count = robots.length;
+  object.add(rim);
+  for (const drawn of [object, rim]) {
+    drawn.frustumCulled = false;
+    drawn.renderOrder = 3;
+  }
   return object;
 }
 

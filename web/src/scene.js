@@ -81,6 +81,7 @@ export function createView(canvas, bounds, shared, isLarge) {
       shared.pixelRatio.value = ratio;
       renderer.setPixelRatio(ratio);
       renderer.setSize(width, height, false);
+      shared.viewport.value.set(width * ratio, height * ratio);
       perspective.aspect = width / height;
       orthographic.left = -(orthographic.right = (orthographic.top * width) / height);
       view.requestRender();

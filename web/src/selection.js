@@ -19,10 +19,9 @@ export function convexHull(places) {
   return sorted.length < 3 ? sorted : [...half(sorted), ...half(sorted.reverse())];
 }
 
-/** Returns show(answer or null, withRobot), which replaces what was shown before. */
-export function createSelection(view, geometry, shared, origin) {
+/** Returns show(answer or null, withRobot), which replaces what was shown before. `robot()` is the geometry of now. */
+export function createSelection(view, robot, shared, origin) {
   let objects = [];
-  const arm = Math.max(geometry.boundingSphere.radius * 0.06, 0.01);
 
   return function show(answer, withRobot) {
     objects.forEach(discard);
@@ -31,7 +30,7 @@ export function createSelection(view, geometry, shared, origin) {
       const place = [answer.pose[0], answer.pose[1], Math.max(answer.pose[2], answer.drawnHeight)];
       objects.push(createMarkers([{ place, verdict: answer.verdict, shape: MARKER.ring }], shared, origin));
       objects[0].material.depthTest = false;
-      if (withRobot) objects.push(createRobots(geometry, [answer], shared, origin));
+      if (withRobot) objects.push(createRobots(robot(), [answer], shared, origin));
       if (answer.contacts.length > 0) objects.push(contactLines(answer.contacts));
       view.scene.add(...objects);
     }
@@ -39,6 +38,7 @@ export function createSelection(view, geometry, shared, origin) {
   };
 
   function contactLines(contacts) {
+    const arm = Math.max(robot().boundingSphere.radius * 0.06, 0.01);
     const crosses = contacts.flatMap(([x, y, z]) => [
       { places: [[x - arm, y, z], [x + arm, y, z]], color: SUPPORT_COLOR },
       { places: [[x, y - arm, z], [x, y + arm, z]], color: SUPPORT_COLOR },

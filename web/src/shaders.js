@@ -1,5 +1,5 @@
 // GLSL that several materials share, and their common uniforms.
-import { DataTexture, NearestFilter, RedFormat, Vector4 } from 'three';
+import { DataTexture, NearestFilter, RedFormat, Vector2, Vector4 } from 'three';
 import { patternPixels, PATTERN_SIZE, rgb, verdictPatterns } from './palette.js';
 
 export const MOST_VERDICTS = 32;
@@ -41,6 +41,7 @@ export function sharedUniforms(verdicts) {
     patterns: { value: 0 },
     patternMap: { value: map },
     pixelRatio: { value: 1 },
+    viewport: { value: new Vector2(1, 1) },  // size of the picture in pixels
     dark: { value: 0 },
   };
 }
