@@ -197,7 +197,6 @@ async function openPage(scriptText, api) {
       state.layers = answer.json.layers.map((layer) => readLayer(answer, layer));
       if (answer.json.robot) changeRobot(answer);
       showLayer(Math.min(state.layerIndex, state.layers.length - 1));
-      view.renderNow();
     },
     showSpawns(answer) {
       for (const list of answer.json.spawns) {
@@ -207,8 +206,8 @@ async function openPage(scriptText, api) {
       }
       showSpawns(state.spawns.findIndex(({ file }) => file === answer.json.spawns[0]?.file));
       tabs.open('Spawns');
-      view.renderNow();
     },
+    draw: view.renderNow,
     countsOf: (kind, answer) => verdictCounts(json.verdicts, kind, answer.json),
   }) : null;
   const tabs = createTabs([
@@ -393,6 +392,8 @@ async function openPage(scriptText, api) {
     view.requestRender();
   });
   setUpSheet(view);
+  view.canvas.addEventListener('webglcontextlost', () =>
+    notice('The browser has stopped the graphics of this page. Load the page again.'));
   toolbar.fill(json, licences);
   view.beforeRender(() => verdictLayer.aim(view));
   view.onRender(overlay);
@@ -513,7 +514,10 @@ function listenToPointer(view, { click, doubleClick, hover }) {
     down = null;
   });
   canvas.addEventListener('dblclick', doubleClick);
-  canvas.addEventListener('pointerleave', () => { byId('tooltip').hidden = true; });
+  canvas.addEventListener('pointerleave', () => {
+    byId('tooltip').hidden = true;
+    byId('under-pointer').textContent = '';
+  });
   canvas.addEventListener('pointermove', (event) => {
     if (asked || event.pointerType === 'touch') return;
     if (event.buttons !== 0) {

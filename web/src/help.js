@@ -14,9 +14,9 @@ const KEYS = [
 export function fillHelp(dialog, json, licences) {
   const patterns = verdictPatterns(json.verdicts);
   const table = (rows) => element('table', {}, element('tbody', {}, ...rows));
-  const close = element('button', { type: 'button', class: 'main', text: 'Close', on: { click: () => dialog.close() } });
+  const close = element('button', { type: 'button', class: 'main', text: 'Close', autofocus: true, on: { click: () => dialog.close() } });
   dialog.replaceChildren(element('div', {},
-    element('h2', { id: 'help-title', text: 'Help' }),
+    element('div', { class: 'head' }, element('h2', { id: 'help-title', text: 'Help' }), close),
     element('p', { text: 'Click a place on the map: the page says whether the robot can stand there, and why not. Drag to turn, ' +
       'drag with the right button (or two fingers) to move, use the wheel (or pinch) to come nearer.' }),
     element('h3', { text: 'Keys' }), table(KEYS.map(([keys, does]) =>
@@ -33,7 +33,5 @@ export function fillHelp(dialog, json, licences) {
     element('details', {}, element('summary', { text: 'Settings of the judge' }),
       element('pre', { text: JSON.stringify(json.settings ?? {}, null, 1) })),
     element('details', {}, element('summary', { text: 'Licences of the libraries in this page' }),
-      ...licences.map(([name, text]) => element('div', {}, element('h3', { text: name }), element('pre', { text })))),
-    element('p', { class: 'row' }, close)));
-  close.parentElement.style.marginTop = '12px';
+      ...licences.map(([name, text]) => element('div', {}, element('h3', { text: name }), element('pre', { text }))))));
 }

@@ -57,7 +57,7 @@ export function changesText(before, after, controls) {
 
 /**
  * Returns {node, askPose(pose, show, fail)}. `live` is that of the pack. `actions`: showLayers(pack), showSpawns(pack),
- * drawRegion(done), showRegions(polygons), countsOf(kind, pack) → [[verdict, count], …].
+ * draw(), drawRegion(done), showRegions(polygons), countsOf(kind, pack) → [[verdict, count], …].
  */
 export function createLive(live, firstCommand, actions) {
   const { controls, address } = live;
@@ -94,8 +94,11 @@ export function createLive(live, firstCommand, actions) {
       const pack = await readPack(bytes);
       if (kind === 'layers') actions.showLayers(pack);
       else actions.showSpawns(pack);
+      const decoded = performance.now();
+      actions.draw();
       const done = performance.now();
-      addRun({ kind, options: request, pack, milliseconds: done - began, shown: done - answered });
+      addRun({ kind, options: request, pack, milliseconds: done - began, decodeMilliseconds: Math.round(decoded - answered),
+               drawMilliseconds: Math.round(done - decoded) });
       error.hidden = true;
       command.textContent = pack.json.command ?? '';
       state.textContent = `Done in ${Math.round(done - began)} ms.`;
@@ -114,16 +117,16 @@ export function createLive(live, firstCommand, actions) {
     }
   }
 
-  function addRun({ kind, options, pack, milliseconds, shown }) {
+  function addRun({ kind, options, pack, milliseconds, ...parts }) {
     const run = { number: runs.length + 1, kind, options, changes: changesText(lastOptions, options, controls) || 'as before',
                   counts: actions.countsOf(kind, pack), milliseconds: Math.round(milliseconds),
-                  shownMilliseconds: Math.round(shown), seconds: pack.json.seconds ?? null, command: pack.json.command ?? '' };
+                  ...parts, seconds: pack.json.seconds ?? null, command: pack.json.command ?? '' };
     lastOptions = options;
     runs.push(run);
     const counts = run.counts.map(([name, count]) => `${name.replace(/_/g, ' ')} ${grouped(count)}`).join(', ');
     runRows.prepend(element('tr', {}, element('td', { text: run.number }),
       element('td', {}, element('strong', { text: run.changes }), ` (${kind}) ${counts}`),
-      element('td', { class: 'number', text: `${run.milliseconds} ms`, title: `decoded and shown in ${run.shownMilliseconds} ms` }),
+      element('td', { class: 'number', text: `${run.milliseconds} ms`, title: runTimes(run) }),
       element('td', {}, element('button', { type: 'button', text: 'Repeat', on: { click: () => repeat(run) } }))));
   }
 
@@ -175,11 +178,16 @@ export function createLive(live, firstCommand, actions) {
   };
 }
 
+function runTimes({ seconds, decodeMilliseconds, drawMilliseconds }) {
+  const program = seconds === null ? '' : `program ${Math.round(1000 * seconds)} ms, `;
+  return `${program}decoding ${decodeMilliseconds} ms, drawing ${drawMilliseconds} ms`;
+}
+
 /** Returns runs as the text of a CSV file. */
 export function runsCsv(runs) {
   const verdicts = [...new Set(runs.flatMap(({ counts }) => counts.map(([name]) => name)))];
-  return csv(['run', 'kind', 'changes', 'milliseconds', 'program_seconds', ...verdicts, 'command'], runs.map((run) =>
-    [run.number, run.kind, run.changes, run.milliseconds, run.seconds,
+  return csv(['run', 'kind', 'changes', 'milliseconds', 'program_seconds', 'decode_milliseconds', 'draw_milliseconds', ...verdicts, 'command'], runs.map((run) =>
+    [run.number, run.kind, run.changes, run.milliseconds, run.seconds, run.decodeMilliseconds, run.drawMilliseconds,
      ...verdicts.map((verdict) => new Map(run.counts).get(verdict) ?? 0), run.command]));
 }
 

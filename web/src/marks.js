@@ -18,9 +18,9 @@ export function createMarks(actions) {
     saveFile(actions.fileName(), marksCsv(marks), 'text/csv');
     saved = true;
   } } });
-  const empty = element('p', { class: 'empty', text:
-    'Click a place or a spawn, and press Good or Bad in its answer. The CSV file is input of spawnfield check, and of ' +
-    'spawnfield sample --avoid.' });
+  const empty = element('p', { class: 'empty' },
+    'Click a place or a spawn, and press Good or Bad in its answer. The CSV file is input of ',
+    element('code', { text: 'spawnfield check' }), ' and of ', element('code', { text: 'spawnfield sample --avoid' }), '.');
   const table = element('table', { id: 'mark-rows' }, element('thead', {}, element('tr', {},
     ...['Mark', 'Name and note', ''].map((text) => element('th', { scope: 'col', text })))), rows);
   const node = element('div', { class: 'block' }, empty, table, element('div', { class: 'row' }, save));

@@ -2,7 +2,7 @@
 
 const VIRIDIS = ['#440154', '#482878', '#3e4a89', '#31688e', '#26828e', '#1f9e89', '#35b779', '#6ece58', '#b5de2b',
                  '#fde725'];
-export const ISLAND_COLORS = ['#0072b2', '#e69f00', '#009e73', '#cc79a7', '#56b4e9', '#d55e00', '#9a9a9a'];
+export const ISLAND_COLORS = ['#332288', '#ddcc77', '#44aa99', '#cc6677', '#88ccee', '#aa4499', '#9a9a9a'];
 export const NO_ISLAND_COLOR = '#4a4a4a';
 export const NO_VALUE_COLOR = '#8a8a8a';
 export const PATTERN_SIZE = 8;

@@ -52,6 +52,8 @@ export function createRegions(view, origin, changed) {
       changed(true);
     },
     click(place) {
+      const last = corners.at(-1);
+      if (last && Math.hypot(place[0] - last[0], place[1] - last[1]) < 1e-6) return;  // the second half of a double click
       corners.push(place);
       redraw();
     },
