@@ -150,7 +150,7 @@ async function openPage(scriptText, api) {
       cameraViews.flyTo(local(island.center), radius);
     },
   };
-  const legend = createLegend({ verdicts: json.verdicts, islands: json.islands ?? [], heights, actions,
+  const legend = createLegend({ verdicts: json.verdicts, islands: () => json.islands ?? [], heights, actions,
                                 labels: json.world.meshes.map(({ label }) => label), layers: () => state.layers });
   const floors = createFloors({ floors: json.floors ?? [], islands: json.islands ?? [], heights, robotHeight, actions });
   byId('settings').append(legend.node, floors.node);
@@ -196,6 +196,10 @@ async function openPage(scriptText, api) {
       state.layers.forEach(verdictLayer.forget);
       state.layers = answer.json.layers.map((layer) => readLayer(answer, layer));
       if (answer.json.robot) changeRobot(answer);
+      if (answer.json.islands) {
+        json.islands = answer.json.islands;
+        floors.setIslands(json.islands);
+      }
       showLayer(Math.min(state.layerIndex, state.layers.length - 1));
     },
     showSpawns(answer) {

@@ -13,7 +13,7 @@ export function cutAbove(floors, index, robotHeight) {
 }
 
 /**
- * Returns {node, cutAt(z), showFloor(index)}. `heights` is [lowest, highest] of the world in the scene. `actions`:
+ * Returns {node, cutAt(z), showFloor(index), setIslands(islands)}. `heights` is [lowest, highest] of the world in the scene. `actions`:
  * setCut(z or null), flyToFloor(index), flyToIsland(index).
  */
 export function createFloors({ floors, islands, heights, robotHeight, actions }) {
@@ -54,10 +54,14 @@ export function createFloors({ floors, islands, heights, robotHeight, actions })
   press(-1);
   value.textContent = 'off';
 
-  const island = element('select', { id: 'island', 'aria-label': 'Fly to an island' },
-    element('option', { value: '', text: 'Fly to an island …' }),
-    ...islands.map(({ number, area }, index) =>
+  const island = element('select', { id: 'island', 'aria-label': 'Fly to an island' });
+  const islandRow = element('div', { class: 'row' }, island);
+  function setIslands(next) {
+    island.replaceChildren(element('option', { value: '', text: 'Fly to an island …' }), ...next.map(({ number, area }, index) =>
       element('option', { value: index, text: `Island ${number}: ${rounded(area, 1)} m²` })));
+    islandRow.hidden = next.length === 0;
+  }
+  setIslands(islands);
   island.addEventListener('change', () => {
     if (island.value !== '') actions.flyToIsland(Number(island.value));
   });
@@ -65,6 +69,6 @@ export function createFloors({ floors, islands, heights, robotHeight, actions })
   const node = element('section', { class: 'block' }, element('h2', { text: 'Floors' }),
     floors.length > 0 && element('div', { class: 'row', role: 'group', 'aria-label': 'Floors' }, everything, ...buttons),
     element('label', { class: 'control' }, element('span', {}, 'Cut the world at a height', value), slider),
-    islands.length > 0 && element('div', { class: 'row' }, island));
-  return { node, cutAt, showFloor };
+    islandRow);
+  return { node, cutAt, showFloor, setIslands };
 }

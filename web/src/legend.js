@@ -38,7 +38,7 @@ export function createLegend({ verdicts, islands, labels, layers, heights, actio
     scale.replaceChildren();
     const quantity = layer?.quantities[Number(next)];
     if (next === 'island') {
-      scale.append(islandLegend(islands));
+      scale.append(islandLegend(islands()));
       actions.colorBy({ mode: 'island' });
     } else if (next === 'height') {
       scale.append(...ramp(heights, 'm'));

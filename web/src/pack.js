@@ -5,6 +5,7 @@ import { MeshoptDecoder } from 'meshoptimizer/meshopt_decoder.module.js';
 const MAGIC = 'SPAWNRV1';
 const FORMAT = 'spawnfield-review/1';
 const HEAD_BYTES = 12;
+const MOST_VALUES = 1 << 28;  // of an array; a gigabyte
 const ARRAY_TYPES = {
   u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i16: Int16Array, i32: Int32Array, f32: Float32Array,
 };
@@ -106,7 +107,7 @@ function adler32(bytes) {
 function decodeArray(blocks, description) {
   const { type, count, coding, width = 1 } = description;
   const Type = ARRAY_TYPES[type];
-  if (!Type || !(Number.isInteger(count) && count >= 0))
+  if (!Type || !(Number.isInteger(count) && count >= 0 && width >= 1 && count * width <= MOST_VALUES))
     throw new PackError(`An array of the data has the type "${type}" and ${count} items. ${advice}`);
   const length = count * width;
   switch (coding) {
