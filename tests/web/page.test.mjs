@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { clickAt, colorAt, startBrowser } from './browser.mjs';
+import { clickAt, colorAt, startBrowser, until } from './browser.mjs';
 import { ORIGIN, pageWith, smallPack } from './make_pack.mjs';
 
 const at = (x, y, z) => [ORIGIN[0] + x, ORIGIN[1] + y, ORIGIN[2] + z];
@@ -47,6 +47,28 @@ test('a click beside the wall answers collision, and names the wall', async () =
   assert.deepEqual(answer.pose.slice(0, 2), [ORIGIN[0] - 0.5, ORIGIN[1] + 3]);
   assert.equal(await page.textContent('#answer-verdict'), 'collision');
   assert.match(await page.textContent('#answer-hit'), /Hits wall \(obstacle\)/);
+});
+
+test('the part that was hit is highlighted, and shown by its button', async () => {
+  const top = at(0, 8, 2);
+  await page.keyboard.press('Escape');
+  const plain = await colorAt(page, top);
+  await clickAt(page, at(-0.5, 3, 0));
+  const marked = await colorAt(page, top);
+  assert.ok(different(plain, marked) && marked[0] > 150 && marked[2] < 100, `${plain} ${marked}`);
+  await page.click('#answer-hit button');
+  const target = await page.evaluate(() => window.spawnfield.target());
+  assert.ok(Math.hypot(target[0] - ORIGIN[0], target[1] - (ORIGIN[1] + 5)) < 0.1, String(target));
+  await page.locator('#canvas').focus();
+  await page.keyboard.press('i');
+});
+
+test('the name of a part is shown under the pointer', async () => {
+  const { x, y } = await page.evaluate((where) => window.spawnfield.project(where), at(0, 8, 1.9));
+  const box = await page.locator('#canvas').boundingBox();
+  await page.mouse.move(box.x + x, box.y + y + 4);
+  await until(page, () => !document.getElementById('tooltip').hidden);
+  assert.equal(await page.textContent('#tooltip'), 'wall (obstacle)');
 });
 
 test('a click on the deck answers for the deck, and one below it for the floor', async () => {
@@ -110,6 +132,12 @@ test('the slider of headings changes the layer', async () => {
   assert.notEqual(await page.locator('#legend').innerText(), before);
   const answer = await page.evaluate(() => window.spawnfield.answerAt(1, 0));
   assert.equal(answer.pose[5], Math.PI / 2);
+  await page.fill('#heading', '0');
+  await page.evaluate(() => window.spawnfield.top());
+  await clickAt(page, at(-1, 4, 0));
+  assert.equal(await page.textContent('#answer-verdict'), 'valid');
+  await page.fill('#heading', '1');
+  assert.equal(await page.textContent('#answer-verdict'), 'collision');
   await page.fill('#heading', '0');
   assert.equal(await page.locator('#legend').innerText(), before);
 });

@@ -16,4 +16,4 @@ fi
 mkdir -p build/web/screenshots
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-TMPDIR=$work CHROMIUM=$browser node --test "${pattern[@]}" tests/web/
+TMPDIR=$work CHROMIUM=$browser node --test "${pattern[@]}" tests/web/*.test.mjs

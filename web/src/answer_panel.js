@@ -68,11 +68,12 @@ function copyRowButton(answer) {
   return button;
 }
 
-function facts({ pose, ground, quantities, island, islandKnown, kind }) {
+function facts({ pose, ground, quantities, island, islandKnown, kind, contacts }) {
   const lines = [];
   if (kind === 'layer') lines.push(['Ground', withUnit(ground, 'm')]);
   for (const { name, unit, value } of quantities)
     if (value !== null) lines.push([`${name[0].toUpperCase()}${name.slice(1)}`, withUnit(value, unit)]);
+  if (contacts.length > 0) lines.push(['Contacts', contacts.length]);
   if (islandKnown) lines.push(['Island', island ?? 'none']);
   lines.push(['Position', pose.slice(0, 3).map((value) => withUnit(value, '')).join(', ') + ' m']);
   lines.push(['Heading', withUnit(pose[5], 'rad')]);

@@ -185,6 +185,7 @@ async function openPage(scriptText, api) {
   const measure = createMeasure(view, origin, (on) => {
     toolbar.setMeasuring(on);
     setCrossing(on);
+    if (on) notice('Click two places. Esc ends measuring.');
   });
   const regions = createRegions(view, origin, (on) => {
     setCrossing(on);
@@ -231,8 +232,15 @@ async function openPage(scriptText, api) {
     state.layerIndex = Math.max(index, 0);
     verdictLayer.show(layerNow());
     legend.showLayer(layerNow(), state.layerIndex);
-    if (state.answer?.kind === 'layer') select(null);
+    if (state.answer?.kind === 'layer') answerAgain(state.answer);
     view.requestRender();
+  }
+
+  // The same place in another layer: another heading, or other settings in live mode.
+  function answerAgain({ pose: [x, y], drawnHeight }) {
+    const layer = layerNow();
+    const pose = layer ? nearestPose(layer, x, y, drawnHeight) : -1;
+    select(pose < 0 ? null : layerAnswer(json, layer, pose));
   }
 
   function changeRobot(answer) {

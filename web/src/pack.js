@@ -21,6 +21,7 @@ const advice = 'The file is damaged or incomplete. Write it again with "spawnfie
 export function bytesFromBase64(text) {
   let binary;
   try {
+    if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);  // several times faster; browsers since 2025
     binary = atob(text.trim());
   } catch {
     throw new PackError(`The data of the page is not base64. ${advice}`);
