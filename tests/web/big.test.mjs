@@ -1,5 +1,5 @@
-// Sizes and times with 1,000,000 triangles and 1,000,000 poses. Times depend on the machine, which draws without graphics
-// hardware here, so only sizes have limits; times are printed.
+// Sizes and times with 1,000,000 triangles and 1,000,000 poses. Times depend on the machine, which draws without
+// graphics hardware here, so only sizes have limits; times are printed.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { startBrowser } from './browser.mjs';
@@ -13,14 +13,19 @@ test('a million triangles and poses are small, and few draw calls', async (conte
     const page = await browser.open(html);
     const { drawCalls, triangles, bytesUploaded, loadMilliseconds, decodeMilliseconds, frameMilliseconds } =
       await page.evaluate(() => window.spawnfield.statistics());
-    context.diagnostic(`file ${html.length} bytes; page ready after ${Math.round(loadMilliseconds)} ms, of which ${Math.round(decodeMilliseconds)} ms ` +
-      `before the first picture; ${drawCalls} draw calls; ${triangles} triangles; ${bytesUploaded} bytes uploaded; ` +
-      `${Math.round(frameMilliseconds)} ms for a picture, drawn without graphics hardware`);
+    context.diagnostic(
+      `file ${html.length} bytes; page ready after ${Math.round(loadMilliseconds)} ms, of which ` +
+        `${Math.round(decodeMilliseconds)} ms before the first picture; ${drawCalls} draw calls; ${triangles} triangles; ` +
+        `${bytesUploaded} bytes uploaded; ${Math.round(frameMilliseconds)} ms for a picture, drawn without graphics hardware`,
+    );
     assert.ok(drawCalls <= 10, `${drawCalls} draw calls`);
     assert.ok(bytesUploaded <= 40e6, `${bytesUploaded} bytes`);
     const answer = await page.evaluate(() => window.spawnfield.pick(320, 380));
     assert.ok(answer.verdictName);
-    assert.deepEqual(page.faults.filter((fault) => !/GPU stall|ReadPixels/.test(fault)), []);
+    assert.deepEqual(
+      page.faults.filter((fault) => !/GPU stall|ReadPixels/.test(fault)),
+      [],
+    );
   } finally {
     await browser.close();
   }

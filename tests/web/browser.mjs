@@ -12,15 +12,22 @@ export async function startBrowser() {
   const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium', args: FLAGS });
   let number = 0;
   return {
-    /** Opens a page, and waits until it is ready unless `failing` is set. Returns it with its `faults` and `requests`. */
+    /** Opens a page. Waits until it is ready unless `failing` is set. Returns it with its `faults` and `requests`. */
     async open(content, { width = 1280, height = 720, dark = false, failing = false, touch = false } = {}) {
-      const context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? 'dark' : 'light',
-                                                 reducedMotion: 'reduce', hasTouch: touch, acceptDownloads: true });
+      const context = await browser.newContext({
+        viewport: { width, height },
+        colorScheme: dark ? 'dark' : 'light',
+        reducedMotion: 'reduce',
+        hasTouch: touch,
+        acceptDownloads: true,
+      });
       const page = await context.newPage();
       page.setDefaultTimeout(60000);
       page.faults = [];
       page.requests = [];
-      page.on('console', (message) => { if (message.type() !== 'log') page.faults.push(message.text()); });
+      page.on('console', (message) => {
+        if (message.type() !== 'log') page.faults.push(message.text());
+      });
       page.on('pageerror', (error) => page.faults.push(String(error)));
       page.on('request', (request) => page.requests.push(request.url()));
       let address = content;
@@ -51,7 +58,7 @@ export async function clickAt(page, place) {
   return page.evaluate(() => window.spawnfield.answer());
 }
 
-/** Waits until a function of the page returns true. (Playwright's waitForFunction needs eval, which the page forbids.) */
+/** Waits until a function of the page returns true. Playwright's waitForFunction needs eval, which the page forbids. */
 export async function until(page, isTrue, argument) {
   for (let tries = 0; tries < 400; ++tries) {
     if (await page.evaluate(isTrue, argument)) return;

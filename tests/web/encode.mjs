@@ -3,8 +3,14 @@ import { MeshoptEncoder, zlibSync } from './libraries.mjs';
 
 await MeshoptEncoder.ready;
 
-const TYPES = new Map([[Uint8Array, 'u8'], [Uint16Array, 'u16'], [Uint32Array, 'u32'], [Int16Array, 'i16'],
-                       [Int32Array, 'i32'], [Float32Array, 'f32']]);
+const TYPES = new Map([
+  [Uint8Array, 'u8'],
+  [Uint16Array, 'u16'],
+  [Uint32Array, 'u32'],
+  [Int16Array, 'i16'],
+  [Int32Array, 'i32'],
+  [Float32Array, 'f32'],
+]);
 const bytesOf = (values) => new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
 
 /** Returns {array(values, coding, width), text(text), bytes(json)}: arrays give their descriptions for the JSON. */
@@ -49,7 +55,7 @@ function deltaPlanes(values) {
   const planes = new Uint8Array(values.length * size);
   let last = 0;
   for (let i = 0; i < values.length; ++i) {
-    const difference = ((values[i] - last) << (32 - bits)) >> (32 - bits);  // in the same number of bits
+    const difference = ((values[i] - last) << (32 - bits)) >> (32 - bits); // in the same number of bits
     const code = (difference << 1) ^ (difference >> 31);
     for (let plane = 0; plane < size; ++plane) planes[plane * values.length + i] = code >>> (8 * plane);
     last = values[i];

@@ -9,7 +9,8 @@ const ADDRESS = '/token/';
 const program = { asked: [], running: 0, mostRunning: 0, delay: 0, html: pageWith(smallPack({ live: ADDRESS })) };
 
 function answer(kind, body) {
-  if (kind === 'pose') return JSON.stringify({ verdict: 'collision', reason: 'collision with wall, said by the program' });
+  if (kind === 'pose')
+    return JSON.stringify({ verdict: 'collision', reason: 'collision with wall, said by the program' });
   const options = body;
   if (options['--max-slope'] === 77) return null;
   return kind === 'layers' ? layersAnswer(options) : spawnsAnswer();
@@ -31,7 +32,9 @@ const server = createServer(async (request, response) => {
   const content = answer(kind, body);
   --program.running;
   response.statusCode = content === null ? 400 : 200;
-  response.end(content ?? JSON.stringify({ message: '--max-slope is 77, needs 0 to 60 degrees; give a smaller angle <b>' }));
+  response.end(
+    content ?? JSON.stringify({ message: '--max-slope is 77, needs 0 to 60 degrees; give a smaller angle <b>' }),
+  );
 });
 
 let browser;
@@ -47,7 +50,10 @@ after(async () => {
   server.close();
 });
 
-const runs = () => page.evaluate(() => window.spawnfield.runs().map(({ counts, changes }) => ({ counts: Object.fromEntries(counts), changes })));
+const runs = () =>
+  page.evaluate(() =>
+    window.spawnfield.runs().map(({ counts, changes }) => ({ counts: Object.fromEntries(counts), changes })),
+  );
 const legend = () => page.locator('#legend').innerText();
 
 test('a change of a setting runs the query and shows the new layer', async () => {
@@ -83,7 +89,10 @@ test('an error is shown in full, and the layer stays', async () => {
   const before = await legend();
   await page.fill('[data-option="--max-slope"]', '77');
   await page.waitForSelector('#live-error:not([hidden])');
-  assert.equal(await page.textContent('#live-error'), '--max-slope is 77, needs 0 to 60 degrees; give a smaller angle <b>');
+  assert.equal(
+    await page.textContent('#live-error'),
+    '--max-slope is 77, needs 0 to 60 degrees; give a smaller angle <b>',
+  );
   assert.equal(await legend(), before);
   await page.fill('[data-option="--max-slope"]', '20');
   await until(page, () => document.getElementById('live-error').hidden);
@@ -121,8 +130,15 @@ test('a region drawn on the map is sent', async () => {
   await page.evaluate(() => window.spawnfield.top());
   await page.click('[data-option="--region"]');
   const box = await page.locator('#canvas').boundingBox();
-  for (const [x, y] of [[-4, -6], [2, -5], [-1, -1]]) {
-    const at = await page.evaluate((place) => window.spawnfield.project(place), [ORIGIN[0] + x, ORIGIN[1] + y, ORIGIN[2]]);
+  for (const [x, y] of [
+    [-4, -6],
+    [2, -5],
+    [-1, -1],
+  ]) {
+    const at = await page.evaluate(
+      (place) => window.spawnfield.project(place),
+      [ORIGIN[0] + x, ORIGIN[1] + y, ORIGIN[2]],
+    );
     await page.mouse.click(box.x + at.x, box.y + at.y);
     await page.waitForTimeout(120);
   }
@@ -136,7 +152,12 @@ test('a region drawn on the map is sent', async () => {
 });
 
 test('nothing is asked from other servers, and nothing wrote an error', () => {
-  const other = page.requests.filter((url) => !url.startsWith(`http://127.0.0.1:${server.address().port}/`) && !/^(data|blob):/.test(url));
+  const other = page.requests.filter(
+    (url) => !url.startsWith(`http://127.0.0.1:${server.address().port}/`) && !/^(data|blob):/.test(url),
+  );
   assert.deepEqual(other, []);
-  assert.deepEqual(page.faults.filter((fault) => !/status of 400/.test(fault)), []);
+  assert.deepEqual(
+    page.faults.filter((fault) => !/status of 400/.test(fault)),
+    [],
+  );
 });

@@ -19,7 +19,10 @@ after(() => browser.close());
 
 test('the page loads from a file without errors and without the network', async () => {
   assert.deepEqual(page.faults, []);
-  assert.deepEqual(page.requests.filter((url) => !/^(file|data|blob):/.test(url)), []);
+  assert.deepEqual(
+    page.requests.filter((url) => !/^(file|data|blob):/.test(url)),
+    [],
+  );
   assert.equal(await page.textContent('#title'), 'training arena, rover');
   assert.equal(await page.textContent('#simplified'), 'World simplified to 12 %; verdicts are exact');
 });
@@ -35,8 +38,13 @@ test('the first sight names refused spawns with their reasons', async () => {
 
 test('the legend counts each verdict', async () => {
   const layer = await page.locator('#legend label').allInnerTexts();
-  const counts = Object.fromEntries(layer.map((line) => line.split('\n')).map(([name, count]) => [name, Number(count.replace(/\D/g, ''))]));
-  assert.equal(Object.values(counts).reduce((sum, count) => sum + count, 0), 41 * 41 + 65);
+  const counts = Object.fromEntries(
+    layer.map((line) => line.split('\n')).map(([name, count]) => [name, Number(count.replace(/\D/g, ''))]),
+  );
+  assert.equal(
+    Object.values(counts).reduce((sum, count) => sum + count, 0),
+    41 * 41 + 65,
+  );
   assert.ok(counts.collision > 0 && counts.valid > 1000);
 });
 
@@ -95,8 +103,14 @@ test('the CSV row of an answer has the numbers of the pose', async () => {
 test('the switch of each verdict changes the map where poses have it', async () => {
   await page.keyboard.press('Escape');
   await page.evaluate(() => window.spawnfield.top());
-  const places = { valid: at(-4, -6.5, 0), submerged: at(5, 7, 0.1), collision: at(-0.5, 3, 0), steep: at(6, -6, 1.8),
-                   unstable: at(-3, -1, 3), outside: at(9.5, 9.5, 0) };
+  const places = {
+    valid: at(-4, -6.5, 0),
+    submerged: at(5, 7, 0.1),
+    collision: at(-0.5, 3, 0),
+    steep: at(6, -6, 1.8),
+    unstable: at(-3, -1, 3),
+    outside: at(9.5, 9.5, 0),
+  };
   for (const [verdict, place] of Object.entries(places)) {
     const on = await colorAt(page, place);
     await page.uncheck(`[data-verdict=${verdict}]`);
@@ -109,13 +123,18 @@ test('the switch of each verdict changes the map where poses have it', async () 
 });
 
 test('patterns are drawn on the map and in the legend, and differ in greyscale', async () => {
-  const swatches = () => page.locator('#legend canvas').evaluateAll((all) => all.map((canvas) => {
-    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-    const grey = (i) => 0.299 * data[i] + 0.587 * data[i + 1] + 0.114 * data[i + 2];
-    const first = Array.from({ length: data.length / 4 }, (_, i) => grey(4 * i));
-    const middle = (Math.min(...first) + Math.max(...first)) / 2;
-    return Math.max(...first) - Math.min(...first) < 5 ? 'plain' : first.map((value) => Number(value > middle)).join('');
-  }));
+  const swatches = () =>
+    page.locator('#legend canvas').evaluateAll((all) =>
+      all.map((canvas) => {
+        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+        const grey = (i) => 0.299 * data[i] + 0.587 * data[i + 1] + 0.114 * data[i + 2];
+        const first = Array.from({ length: data.length / 4 }, (_, i) => grey(4 * i));
+        const middle = (Math.min(...first) + Math.max(...first)) / 2;
+        return Math.max(...first) - Math.min(...first) < 5
+          ? 'plain'
+          : first.map((value) => Number(value > middle)).join('');
+      }),
+    );
   assert.deepEqual([...new Set(await swatches())], ['plain']);
   const before = await page.locator('#map').screenshot();
   await page.check('#patterns');
@@ -184,7 +203,7 @@ test('keys change view and floor', async () => {
   await page.keyboard.press('?');
   assert.ok(await page.locator('#help-dialog').isVisible());
   await page.keyboard.press('Escape');
-  assert.ok(!await page.locator('#help-dialog').isVisible());
+  assert.ok(!(await page.locator('#help-dialog').isVisible()));
 });
 
 test('a click in the sorted list flies to the spawn', async () => {
@@ -226,7 +245,7 @@ test('distances are measured', async () => {
   const [metres] = (await page.textContent('#measure-label')).match(/[\d.]+/);
   assert.ok(Math.abs(Number(metres) - 4) < 0.1, metres);
   await page.keyboard.press('Escape');
-  assert.ok(!await page.locator('#measure-label').isVisible());
+  assert.ok(!(await page.locator('#measure-label').isVisible()));
 });
 
 test('marks are saved as CSV that spawnfield reads', async () => {
@@ -239,20 +258,28 @@ test('marks are saved as CSV that spawnfield reads', async () => {
   await page.click('#tab-marks');
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save-marks')]);
   assert.equal(download.suggestedFilename(), 'marks.csv');
-  assert.equal(readFileSync(await download.path(), 'utf8'),
+  assert.equal(
+    readFileSync(await download.path(), 'utf8'),
     'x,y,z,roll,pitch,yaw,name,mark,note\n499995,4599998.9,103.02,0,0,0,edge,bad,"too near, ""really"""\n' +
-    '499999.5,4600003,100.02,0,0,0,mark 2,good,\n');
+      '499999.5,4600003,100.02,0,0,0,mark 2,good,\n',
+  );
   await page.click('#tab-spawns');
 });
 
 test('nothing of all this wrote an error', () => assert.deepEqual(page.faults, []));
 
 test('hostile names remain text', async () => {
-  const names = ['<img src=x onerror=alert(1)>', `long ${'x'.repeat(5000)}`, 'bell\u0007 and \u202eturned', '</script><script>alert(1)</script>'];
+  const names = [
+    '<img src=x onerror=alert(1)>',
+    `long ${'x'.repeat(5000)}`,
+    'bell\u0007 and \u202eturned',
+    '</script><script>alert(1)</script>',
+  ];
   const hostile = await browser.open(pageWith(smallPack({ names, partName: '<b onmouseover=alert(1)>wall</b>' })));
   hostile.on('dialog', () => assert.fail('a script of a name ran'));
   const shown = await hostile.locator('#spawn-rows .name').allInnerTexts();
-  for (const name of [names[0], names[1], 'bell\ufffd and \ufffdturned', names[3]]) assert.ok(shown.includes(name), name.slice(0, 60));
+  for (const name of [names[0], names[1], 'bell\ufffd and \ufffdturned', names[3]])
+    assert.ok(shown.includes(name), name.slice(0, 60));
   assert.equal(await hostile.locator('#spawn-rows img, #spawn-rows script').count(), 0);
   const row = await hostile.locator('#spawn-rows li').first().boundingBox();
   assert.ok(row.width < 400 && row.height < 120);
@@ -267,15 +294,21 @@ test('a damaged page says so', async () => {
   const whole = smallPack();
   const flipped = Buffer.from(whole);
   flipped[whole.length - 3000] ^= 0xff;
-  const cases = [[whole.subarray(0, 5), /SPAWNRV1/], [whole.subarray(0, 500), /ends within its description/],
-                 [whole.subarray(0, whole.length - 2000), /damaged or incomplete/], [Buffer.from('no pack at all'), /SPAWNRV1/]];
+  const cases = [
+    [whole.subarray(0, 5), /SPAWNRV1/],
+    [whole.subarray(0, 500), /ends within its description/],
+    [whole.subarray(0, whole.length - 2000), /damaged or incomplete/],
+    [Buffer.from('no pack at all'), /SPAWNRV1/],
+  ];
   for (const [bytes, message] of cases) {
     const damaged = await browser.open(pageWith(bytes), { failing: true });
     await damaged.waitForSelector('#failure');
     assert.match(await damaged.textContent('#failure'), message);
     await damaged.done();
   }
-  const empty = await browser.open(readFileSync(new URL('../../build/web/review.html', import.meta.url), 'utf8'), { failing: true });
+  const empty = await browser.open(readFileSync(new URL('../../build/web/review.html', import.meta.url), 'utf8'), {
+    failing: true,
+  });
   await empty.waitForSelector('#failure');
   assert.match(await empty.textContent('#failure'), /has no data/);
   await empty.done();
@@ -283,8 +316,11 @@ test('a damaged page says so', async () => {
 
 test('screenshots of the page on screens of all sizes', async () => {
   for (const [name, options] of Object.entries({
-    desktop: { width: 1920, height: 1080 }, laptop: { width: 1280, height: 720 }, dark: { width: 1280, height: 720, dark: true },
-    phone: { width: 390, height: 844, touch: true }, phone_dark: { width: 390, height: 844, touch: true, dark: true },
+    desktop: { width: 1920, height: 1080 },
+    laptop: { width: 1280, height: 720 },
+    dark: { width: 1280, height: 720, dark: true },
+    phone: { width: 390, height: 844, touch: true },
+    phone_dark: { width: 390, height: 844, touch: true, dark: true },
   })) {
     const shown = await browser.open(pageWith(smallPack()), options);
     if (name === 'dark') await shown.check('#patterns');
@@ -292,7 +328,10 @@ test('screenshots of the page on screens of all sizes', async () => {
     await shown.locator('[data-spawn="0"]').click();
     await shown.waitForTimeout(200);
     await shown.screenshot({ path: `${SCREENSHOTS}${name}_answer.png` });
-    assert.ok(await shown.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), `${name} is too wide`);
+    assert.ok(
+      await shown.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth),
+      `${name} is too wide`,
+    );
     await shown.done();
   }
 });

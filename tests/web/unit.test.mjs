@@ -7,10 +7,31 @@ import { smallPack, verdictIndex } from './make_pack.mjs';
 
 let parts;
 before(async () => {
-  const names = ['pack', 'layer_data', 'csv', 'numbers', 'marks', 'measure', 'regions', 'spawn_list', 'selection', 'live', 'palette', 'floors'];
-  const { outputFiles: [script] } = await esbuild.build({
-    stdin: { contents: names.map((name) => `export * from './src/${name}.js';`).join('\n'), resolveDir: new URL('../../web', import.meta.url).pathname },
-    bundle: true, write: false, format: 'esm', logLevel: 'warning',
+  const names = [
+    'pack',
+    'layer_data',
+    'csv',
+    'numbers',
+    'marks',
+    'measure',
+    'regions',
+    'spawn_list',
+    'selection',
+    'live',
+    'palette',
+    'floors',
+  ];
+  const {
+    outputFiles: [script],
+  } = await esbuild.build({
+    stdin: {
+      contents: names.map((name) => `export * from './src/${name}.js';`).join('\n'),
+      resolveDir: new URL('../../web', import.meta.url).pathname,
+    },
+    bundle: true,
+    write: false,
+    format: 'esm',
+    logLevel: 'warning',
   });
   parts = await import(`data:text/javascript;base64,${Buffer.from(script.contents).toString('base64')}`);
 });
@@ -37,19 +58,31 @@ async function readAll(bytes) {
 
 test('arrays of all types and codings are read back', async () => {
   const made = createPack();
-  const values = [new Uint8Array([0, 255, 3, 3, 128]), new Uint16Array([65535, 0, 40000, 1]), new Uint32Array([4294967295, 0, 2147483648, 7]),
-                  new Int16Array([-32768, 32767, 0, -1]), new Int32Array([-2147483648, 2147483647, 0, -5])];
+  const values = [
+    new Uint8Array([0, 255, 3, 3, 128]),
+    new Uint16Array([65535, 0, 40000, 1]),
+    new Uint32Array([4294967295, 0, 2147483648, 7]),
+    new Int16Array([-32768, 32767, 0, -1]),
+    new Int32Array([-2147483648, 2147483647, 0, -5]),
+  ];
   const described = values.map((array) => made.array(array));
   const floats = new Float32Array([1.5, -2.25, 1e30]);
   const plain = made.array(floats, 'plain', 3);
   const triangles = made.array(new Uint32Array([0, 1, 2, 2, 1, 3, 3, 1, 4]), 'index');
-  const vertices = made.array(new Uint16Array(4 * 50).map((_, at) => at * 37), 'vertex', 4);
+  const vertices = made.array(
+    new Uint16Array(4 * 50).map((_, at) => at * 37),
+    'vertex',
+    4,
+  );
   const text = made.text('Müller\n\u0001');
   const pack = await parts.readPack(made.bytes({ format: 'spawnfield-review/1' }));
   values.forEach((array, at) => assert.deepEqual(pack.array(described[at]), array));
   assert.deepEqual(pack.array(plain), floats);
   assert.equal(pack.array(triangles).length, 9);
-  assert.deepEqual(pack.array(vertices), new Uint16Array(4 * 50).map((_, at) => at * 37));
+  assert.deepEqual(
+    pack.array(vertices),
+    new Uint16Array(4 * 50).map((_, at) => at * 37),
+  );
   assert.equal(pack.text(text), 'Müller\n\u0001');
 });
 
@@ -92,7 +125,10 @@ test('poses, reasons and quantities of a layer are those that were stored', asyn
 });
 
 test('fields of CSV are quoted where spawnfield needs it', () => {
-  assert.equal(parts.row([0.1 + 0.2, 'a,b', 'say "x"', null, ' edge', 'two\nlines']), '0.30000000000000004,"a,b","say ""x""",," edge",two lines');
+  assert.equal(
+    parts.row([0.1 + 0.2, 'a,b', 'say "x"', null, ' edge', 'two\nlines']),
+    '0.30000000000000004,"a,b","say ""x""",," edge",two lines',
+  );
   assert.equal(parts.marksCsv([]), 'x,y,z,roll,pitch,yaw,name,mark,note\n');
 });
 
@@ -107,7 +143,13 @@ test('numbers for people', () => {
 });
 
 test('the list is sorted, and poses without a value come last', () => {
-  const list = { columns: ['name'], rows: [['b'], ['a10'], ['a9']], poses: [0, 0, 0], verdicts: [0, 5, 0], clearance: [2, null, 1] };
+  const list = {
+    columns: ['name'],
+    rows: [['b'], ['a10'], ['a9']],
+    poses: [0, 0, 0],
+    verdicts: [0, 5, 0],
+    clearance: [2, null, 1],
+  };
   const isValid = (verdict) => verdict === 0;
   assert.deepEqual(parts.sortedPoses(list, 'verdict', isValid), [1, 0, 2]);
   assert.deepEqual(parts.sortedPoses(list, 'name', isValid), [2, 1, 0]);
@@ -115,12 +157,31 @@ test('the list is sorted, and poses without a value come last', () => {
 });
 
 test('the support polygon is the convex hull', () => {
-  const hull = parts.convexHull([[0, 0, 1], [2, 0, 1], [1, 0.5, 1], [2, 2, 1], [0, 2, 1], [1, 1, 1]]);
-  assert.deepEqual(hull.map(([x, y]) => [x, y]), [[0, 0], [2, 0], [2, 2], [0, 2]]);
+  const hull = parts.convexHull([
+    [0, 0, 1],
+    [2, 0, 1],
+    [1, 0.5, 1],
+    [2, 2, 1],
+    [0, 2, 1],
+    [1, 1, 1],
+  ]);
+  assert.deepEqual(
+    hull.map(([x, y]) => [x, y]),
+    [
+      [0, 0],
+      [2, 0],
+      [2, 2],
+      [0, 2],
+    ],
+  );
 });
 
 test('regions are GeoJSON, there and back', () => {
-  const square = [[0, 0, 5], [1, 0, 5], [1, 1, 5]];
+  const square = [
+    [0, 0, 5],
+    [1, 0, 5],
+    [1, 1, 5],
+  ];
   assert.equal(parts.regionsText([]), '');
   assert.equal(parts.regionsText([square]), '{"type":"Polygon","coordinates":[[[0,0],[1,0],[1,1],[0,0]]]}');
   assert.deepEqual(parts.regionsFromText(parts.regionsText([square, square]), 5), [square, square]);
@@ -129,10 +190,13 @@ test('regions are GeoJSON, there and back', () => {
 test('one request runs at a time, and the last one of a kind wins', async () => {
   const sent = [];
   let release;
-  const ask = parts.createQueue((kind, body) => new Promise((done) => {
-    sent.push([kind, body]);
-    release = done;
-  }));
+  const ask = parts.createQueue(
+    (kind, body) =>
+      new Promise((done) => {
+        sent.push([kind, body]);
+        release = done;
+      }),
+  );
   ask('layers', 1);
   ask('layers', 2);
   ask('spawns', 3);
@@ -142,7 +206,11 @@ test('one request runs at a time, and the last one of a kind wins', async () => 
     release();
     await new Promise((later) => setTimeout(later));
   }
-  assert.deepEqual(sent, [['layers', 1], ['layers', 4], ['spawns', 3]]);
+  assert.deepEqual(sent, [
+    ['layers', 1],
+    ['layers', 4],
+    ['spawns', 3],
+  ]);
 });
 
 test('a floor is cut above its robots and below the next floor', () => {

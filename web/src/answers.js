@@ -19,14 +19,28 @@ export function layerAnswer(json, layer, pose) {
   const ground = layer.ground[pose] === NO_GROUND ? null : layer.z0 + layer.unit * layer.ground[pose];
   const island = layer.island()?.[pose] ?? 0;
   const verdict = layer.verdict[pose];
-  const quantities = layer.quantities.map((quantity) => ({ name: quantity.name, unit: quantity.unit,
-                                                           value: quantityAt(quantity, pose) }));
+  const quantities = layer.quantities.map((quantity) => ({
+    name: quantity.name,
+    unit: quantity.unit,
+    value: quantityAt(quantity, pose),
+  }));
   return {
-    kind: 'layer', pose: [numbers.x, numbers.y, numbers.z, numbers.roll, numbers.pitch, numbers.yaw],
-    verdict, verdictName: json.verdicts[verdict]?.name ?? '', words: json.verdicts[verdict]?.words ?? '',
-    reason: layer.reasonOf(pose), hit: hitOf(json, layer.hit()?.[pose] ?? 0), ground, quantities,
-    island: island || null, islandKnown: layer.hasIslands, drawnHeight: drawnHeight(layer, pose),
-    source: `pose ${pose + 1} of ${layer.count} of layer ${layer.name}`, name: '', fields: null, contacts: [],
+    kind: 'layer',
+    pose: [numbers.x, numbers.y, numbers.z, numbers.roll, numbers.pitch, numbers.yaw],
+    verdict,
+    verdictName: json.verdicts[verdict]?.name ?? '',
+    words: json.verdicts[verdict]?.words ?? '',
+    reason: layer.reasonOf(pose),
+    hit: hitOf(json, layer.hit()?.[pose] ?? 0),
+    ground,
+    quantities,
+    island: island || null,
+    islandKnown: layer.hasIslands,
+    drawnHeight: drawnHeight(layer, pose),
+    source: `pose ${pose + 1} of ${layer.count} of layer ${layer.name}`,
+    name: '',
+    fields: null,
+    contacts: [],
   };
 }
 
@@ -35,14 +49,24 @@ export function spawnAnswer(json, list, index) {
   const verdict = list.verdicts[index];
   const at = (values) => values?.[index] ?? null;
   return {
-    kind: 'spawn', pose: list.poses[index], verdict, verdictName: json.verdicts[verdict]?.name ?? '',
-    words: json.verdicts[verdict]?.words ?? '', reason: list.reasons?.[index] ?? '',
-    hit: hitOf(json, list.hits?.[index] ?? 0), ground: null,
-    quantities: [{ name: 'tilt', unit: 'rad', value: at(list.tilt) },
-                 { name: 'margin', unit: 'm', value: at(list.margin) },
-                 { name: 'clearance', unit: 'm', value: at(list.clearance) }],
-    island: null, islandKnown: false, drawnHeight: list.poses[index][2],
-    source: `row ${index + 2} of ${list.file}`, name: spawnName(list, index),
+    kind: 'spawn',
+    pose: list.poses[index],
+    verdict,
+    verdictName: json.verdicts[verdict]?.name ?? '',
+    words: json.verdicts[verdict]?.words ?? '',
+    reason: list.reasons?.[index] ?? '',
+    hit: hitOf(json, list.hits?.[index] ?? 0),
+    ground: null,
+    quantities: [
+      { name: 'tilt', unit: 'rad', value: at(list.tilt) },
+      { name: 'margin', unit: 'm', value: at(list.margin) },
+      { name: 'clearance', unit: 'm', value: at(list.clearance) },
+    ],
+    island: null,
+    islandKnown: false,
+    drawnHeight: list.poses[index][2],
+    source: `row ${index + 2} of ${list.file}`,
+    name: spawnName(list, index),
     fields: list.columns?.map((column, c) => [column, list.rows?.[index]?.[c] ?? '']) ?? null,
     contacts: list.contacts?.[index] ?? [],
   };

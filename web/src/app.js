@@ -29,22 +29,24 @@ import { grouped, percent, withUnit } from './numbers.js';
 
 const UNCUT = 1e30;
 const CLICK_PIXELS = 6;
-const MANY_THINGS = 600000;  // triangles and poses
+const MANY_THINGS = 600000; // triangles and poses
 
 /** Starts the page. `window.spawnfield` is for tests and for the console; docs: web/README.md. */
 export function startPage(scriptText) {
   const pickLoaded = deferred();
   window.spawnfield = { ready: pickLoaded.promise };
-  pickLoaded.promise.catch(() => {});  // the page itself shows the failure
-  requestAnimationFrame(() => setTimeout(async () => {
-    try {
-      await openPage(scriptText, window.spawnfield);
-      pickLoaded.resolve();
-    } catch (error) {
-      showFailure(error);
-      pickLoaded.reject(error);
-    }
-  }));
+  pickLoaded.promise.catch(() => {}); // the page itself shows the failure
+  requestAnimationFrame(() =>
+    setTimeout(async () => {
+      try {
+        await openPage(scriptText, window.spawnfield);
+        pickLoaded.resolve();
+      } catch (error) {
+        showFailure(error);
+        pickLoaded.reject(error);
+      }
+    }),
+  );
 }
 
 function deferred() {
@@ -55,18 +57,31 @@ function deferred() {
 
 function showFailure(error) {
   const known = error instanceof PackError;
-  const text = known ? error.message : `The page cannot be shown: ${error.message}. If the file was changed on its way, ` +
-    'write it again with "spawnfield review".';
+  const text = known
+    ? error.message
+    : `The page cannot be shown: ${error.message}. If the file was changed on its way, ` +
+      'write it again with "spawnfield review".';
   document.body.classList.add('failed');
-  document.querySelector('main').replaceWith(element('div', { class: 'failure', role: 'alert', id: 'failure' },
-    element('h2', { text: 'This review cannot be shown' }), element('p', { text })));
+  document
+    .querySelector('main')
+    .replaceWith(
+      element(
+        'div',
+        { class: 'failure', role: 'alert', id: 'failure' },
+        element('h2', { text: 'This review cannot be shown' }),
+        element('p', { text }),
+      ),
+    );
   byId('sheet-tabs').hidden = true;
   byId('hint').textContent = '';
 }
 
 function packBytes() {
   const script = byId('spawnfield-data');
-  if (!script) throw new PackError('This page has no data. "spawnfield review MAP --robot R -o review.html" writes a page with data.');
+  if (!script)
+    throw new PackError(
+      'This page has no data. "spawnfield review MAP --robot R -o review.html" writes a page with data.',
+    );
   const bytes = bytesFromBase64(script.textContent);
   script.remove();
   return bytes;
@@ -74,15 +89,19 @@ function packBytes() {
 
 function needWebGl2() {
   const gl = document.createElement('canvas').getContext('webgl2');
-  if (!gl) throw new PackError('This browser has no WebGL 2. Allow graphics (WebGL) in its settings, or open the page ' +
-                               'in a current Firefox or Chromium.');
+  if (!gl)
+    throw new PackError(
+      'This browser has no WebGL 2. Allow graphics (WebGL) in its settings, or open the page ' +
+        'in a current Firefox or Chromium.',
+    );
   gl.getExtension('WEBGL_lose_context')?.loseContext();
 }
 
 async function openPage(scriptText, api) {
   const pack = await readPack(packBytes());
   const { json } = pack;
-  if (json.verdicts.length > MOST_VERDICTS) throw new PackError(`The data has ${json.verdicts.length} verdicts; the page shows ${MOST_VERDICTS}.`);
+  if (json.verdicts.length > MOST_VERDICTS)
+    throw new PackError(`The data has ${json.verdicts.length} verdicts; the page shows ${MOST_VERDICTS}.`);
   needWebGl2();
   const { origin } = json;
   const local = (place) => place.map((value, axis) => value - origin[axis]);
@@ -106,8 +125,13 @@ async function openPage(scriptText, api) {
   const showSelection = createSelection(view, () => robot, shared, origin);
   const overlay = createOverlay(view);
 
-  const state = { layers: (json.layers ?? []).map((layer) => readLayer(pack, layer)), layerIndex: 0,
-                  spawns: json.spawns ?? [], pairs: json.pairs ?? [], answer: null };
+  const state = {
+    layers: (json.layers ?? []).map((layer) => readLayer(pack, layer)),
+    layerIndex: 0,
+    spawns: json.spawns ?? [],
+    pairs: json.pairs ?? [],
+    answer: null,
+  };
   const layerNow = () => state.layers[state.layerIndex] ?? null;
 
   // Panels
@@ -131,7 +155,11 @@ async function openPage(scriptText, api) {
     },
     setLayer: showLayer,
     show(label, on) {
-      world.meshes.filter((mesh) => mesh.userData.label === label).forEach((mesh) => { mesh.visible = on; });
+      world.meshes
+        .filter((mesh) => mesh.userData.label === label)
+        .forEach((mesh) => {
+          mesh.visible = on;
+        });
       view.requestRender();
     },
     setCut(z) {
@@ -150,9 +178,21 @@ async function openPage(scriptText, api) {
       cameraViews.flyTo(local(island.center), radius);
     },
   };
-  const legend = createLegend({ verdicts: json.verdicts, islands: () => json.islands ?? [], heights, actions,
-                                labels: json.world.meshes.map(({ label }) => label), layers: () => state.layers });
-  const floors = createFloors({ floors: json.floors ?? [], islands: json.islands ?? [], heights, robotHeight, actions });
+  const legend = createLegend({
+    verdicts: json.verdicts,
+    islands: () => json.islands ?? [],
+    heights,
+    actions,
+    labels: json.world.meshes.map(({ label }) => label),
+    layers: () => state.layers,
+  });
+  const floors = createFloors({
+    floors: json.floors ?? [],
+    islands: json.islands ?? [],
+    heights,
+    robotHeight,
+    actions,
+  });
   byId('settings').append(legend.node, floors.node);
 
   const answerPanel = createAnswerPanel({
@@ -171,16 +211,21 @@ async function openPage(scriptText, api) {
     },
     close: () => select(null),
   });
-  const spawnList = createSpawnList(json.verdicts, { swatch: legend.swatch, pick: (list, index) => {
-    select(spawnAnswer(json, state.spawns[list], index), { list, index });
-    cameraViews.flyTo(local(state.answer.pose.slice(0, 3)), robotRadius * 4);
-  } });
+  const spawnList = createSpawnList(json.verdicts, {
+    swatch: legend.swatch,
+    pick: (list, index) => {
+      select(spawnAnswer(json, state.spawns[list], index), { list, index });
+      cameraViews.flyTo(local(state.answer.pose.slice(0, 3)), robotRadius * 4);
+    },
+  });
   const marks = createMarks({
-    changed: drawMarkers, fly: ({ pose }) => cameraViews.flyTo(local(pose.slice(0, 3)), robotRadius * 4),
+    changed: drawMarkers,
+    fly: ({ pose }) => cameraViews.flyTo(local(pose.slice(0, 3)), robotRadius * 4),
     fileName: () => 'marks.csv',
   });
   const pairsPanel = pairList(state.pairs, {
-    swatch: ({ verdict }) => legend.swatch(json.verdicts.findIndex(({ name }) => name === verdict)), pick: showPair,
+    swatch: ({ verdict }) => legend.swatch(json.verdicts.findIndex(({ name }) => name === verdict)),
+    pick: showPair,
   });
   const measure = createMeasure(view, origin, (on) => {
     toolbar.setMeasuring(on);
@@ -191,36 +236,47 @@ async function openPage(scriptText, api) {
     setCrossing(on);
     if (on) notice('Click the corners of the region. Enter or a double click ends it, Esc gives up.');
   });
-  const live = json.live ? createLive(json.live, json.command, {
-    regionHeight: heights[1], drawRegion: regions.begin, showRegions: regions.show,
-    showLayers(answer) {
-      state.layers.forEach(verdictLayer.forget);
-      state.layers = answer.json.layers.map((layer) => readLayer(answer, layer));
-      if (answer.json.robot) changeRobot(answer);
-      if (answer.json.islands) {
-        json.islands = answer.json.islands;
-        floors.setIslands(json.islands);
-      }
-      showLayer(Math.min(state.layerIndex, state.layers.length - 1));
-    },
-    showSpawns(answer) {
-      for (const list of answer.json.spawns) {
-        const before = state.spawns.findIndex(({ file }) => file === list.file);
-        if (before >= 0) state.spawns[before] = list;
-        else state.spawns.push(list);
-      }
-      showSpawns(state.spawns.findIndex(({ file }) => file === answer.json.spawns[0]?.file));
-      tabs.open('Spawns');
-    },
-    draw: view.renderNow,
-    countsOf: (kind, answer) => verdictCounts(json.verdicts, kind, answer.json),
-  }) : null;
-  const tabs = createTabs([
-    live && ['Live', live.node], ['Spawns', spawnList.node], state.pairs.length > 0 && ['Pairs', pairsPanel], ['Marks', marks.node],
-  ].filter(Boolean));
+  const live = json.live
+    ? createLive(json.live, json.command, {
+        regionHeight: heights[1],
+        drawRegion: regions.begin,
+        showRegions: regions.show,
+        showLayers(answer) {
+          state.layers.forEach(verdictLayer.forget);
+          state.layers = answer.json.layers.map((layer) => readLayer(answer, layer));
+          if (answer.json.robot) changeRobot(answer);
+          if (answer.json.islands) {
+            json.islands = answer.json.islands;
+            floors.setIslands(json.islands);
+          }
+          showLayer(Math.min(state.layerIndex, state.layers.length - 1));
+        },
+        showSpawns(answer) {
+          for (const list of answer.json.spawns) {
+            const before = state.spawns.findIndex(({ file }) => file === list.file);
+            if (before >= 0) state.spawns[before] = list;
+            else state.spawns.push(list);
+          }
+          showSpawns(state.spawns.findIndex(({ file }) => file === answer.json.spawns[0]?.file));
+          tabs.open('Spawns');
+        },
+        draw: view.renderNow,
+        countsOf: (kind, answer) => verdictCounts(json.verdicts, kind, answer.json),
+      })
+    : null;
+  const tabs = createTabs(
+    [
+      live && ['Live', live.node],
+      ['Spawns', spawnList.node],
+      state.pairs.length > 0 && ['Pairs', pairsPanel],
+      ['Marks', marks.node],
+    ].filter(Boolean),
+  );
   byId('answers').append(answerPanel.node, tabs.node);
   const toolbar = createToolbar({
-    top: () => cameraViews.top(), isometric: () => cameraViews.isometric(), measure: () => measure.toggle(),
+    top: () => cameraViews.top(),
+    isometric: () => cameraViews.isometric(),
+    measure: () => measure.toggle(),
   });
 
   function setCrossing(on) {
@@ -258,7 +314,9 @@ async function openPage(scriptText, api) {
   }
 
   function showSpawns(index) {
-    spawnRefs = state.spawns.flatMap((list, l) => list.poses.map((pose, i) => ({ pose, verdict: list.verdicts[i], list: l, index: i })));
+    spawnRefs = state.spawns.flatMap((list, l) =>
+      list.poses.map((pose, i) => ({ pose, verdict: list.verdicts[i], list: l, index: i })),
+    );
     drawSpawns();
     spawnList.show(state.spawns, Math.max(index, 0));
     drawMarkers();
@@ -271,30 +329,66 @@ async function openPage(scriptText, api) {
     const above = json.robot.bounds.max[2] + 0.3 * robotRadius;
     const valid = json.verdicts.findIndex(({ name }) => name === 'valid');
     const lifted = ([x, y, z]) => [x, y, z + above];
-    markers = createMarkers([
-      ...spawnRefs.map(({ pose, verdict }) => ({ place: lifted(pose), verdict, shape: verdict === valid ? MARKER.disc : MARKER.crossed })),
-      ...marks.marks.map(({ pose, mark }) => ({ place: lifted(lifted(pose)), verdict: 0, shape: mark === 'good' ? MARKER.good : MARKER.bad })),
-    ], shared, origin);
+    markers = createMarkers(
+      [
+        ...spawnRefs.map(({ pose, verdict }) => ({
+          place: lifted(pose),
+          verdict,
+          shape: verdict === valid ? MARKER.disc : MARKER.crossed,
+        })),
+        ...marks.marks.map(({ pose, mark }) => ({
+          place: lifted(lifted(pose)),
+          verdict: 0,
+          shape: mark === 'good' ? MARKER.good : MARKER.bad,
+        })),
+      ],
+      shared,
+      origin,
+    );
     view.scene.add(markers);
     view.requestRender();
   }
 
-  const pairLines = createLines(state.pairs.flatMap(({ pairs }) => pairs.filter(({ path }) => path?.length > 1).map((pair) =>
-    ({ places: pair.path.map(lift), color: verdictColor(json, pair.verdict) }))), origin, { width: 3 });
+  const pairLines = createLines(
+    state.pairs.flatMap(({ pairs }) =>
+      pairs
+        .filter(({ path }) => path?.length > 1)
+        .map((pair) => ({ places: pair.path.map(lift), color: verdictColor(json, pair.verdict) })),
+    ),
+    origin,
+    { width: 3 },
+  );
   view.scene.add(pairLines);
   let shownPair = [];
   function showPair(l, index) {
     const pair = state.pairs[l].pairs[index];
     select(null);
     shownPair.forEach(discard);
-    const verdict = Math.max(json.verdicts.findIndex(({ name }) => name === pair.verdict), 0);
+    const verdict = Math.max(
+      json.verdicts.findIndex(({ name }) => name === pair.verdict),
+      0,
+    );
     const path = pair.path?.length > 1 ? pair.path : [pair.start.slice(0, 3), pair.goal.slice(0, 3)];
-    shownPair = [createLines([{ places: path.map(lift), color: '#d81b60' }], origin, { width: 5, onTop: true }),
-                 createRobots(robot, [{ pose: pair.start, verdict }, { pose: pair.goal, verdict }], shared, origin)];
+    shownPair = [
+      createLines([{ places: path.map(lift), color: '#d81b60' }], origin, { width: 5, onTop: true }),
+      createRobots(
+        robot,
+        [
+          { pose: pair.start, verdict },
+          { pose: pair.goal, verdict },
+        ],
+        shared,
+        origin,
+      ),
+    ];
     view.scene.add(...shownPair);
-    const [low, high] = [Math.min, Math.max].map((pick) => [0, 1, 2].map((axis) => pick(...path.map((place) => place[axis]))));
-    cameraViews.flyTo(local(low.map((value, axis) => (value + high[axis]) / 2)),
-                      Math.max(Math.hypot(...high.map((value, axis) => value - low[axis])) * 0.6, robotRadius * 4));
+    const [low, high] = [Math.min, Math.max].map((pick) =>
+      [0, 1, 2].map((axis) => pick(...path.map((place) => place[axis]))),
+    );
+    cameraViews.flyTo(
+      local(low.map((value, axis) => (value + high[axis]) / 2)),
+      Math.max(Math.hypot(...high.map((value, axis) => value - low[axis])) * 0.6, robotRadius * 4),
+    );
     answerPanel.clear(`${pair.name || `Pair ${index + 1}`}: ${pair.verdict.replace(/_/g, ' ')}. ${pair.reason ?? ''}`);
   }
 
@@ -364,14 +458,21 @@ async function openPage(scriptText, api) {
     else regions.click(found.place);
   }
 
-  listenToPointer(view, { click, doubleClick: regions.finish, hover(x, y) {
-    if (!picking.isReady()) return;
-    const found = placeAt(x, y);
-    showTooltip(found && json.parts[found.part]?.name, found?.label, x, y);
-    byId('under-pointer').textContent = found ? found.place.map((value) => value.toFixed(2)).join(', ') : '';
-  } });
+  listenToPointer(view, {
+    click,
+    doubleClick: regions.finish,
+    hover(x, y) {
+      if (!picking.isReady()) return;
+      const found = placeAt(x, y);
+      showTooltip(found && json.parts[found.part]?.name, found?.label, x, y);
+      byId('under-pointer').textContent = found ? found.place.map((value) => value.toFixed(2)).join(', ') : '';
+    },
+  });
   listenToKeys({
-    cameraViews, floors, toolbar, measure,
+    cameraViews,
+    floors,
+    toolbar,
+    measure,
     fly: () => state.answer && cameraViews.flyTo(local(state.answer.pose.slice(0, 3)), robotRadius * 4),
     enter: () => (regions.active ? regions.finish() : click(view.canvas.clientWidth / 2, view.canvas.clientHeight / 2)),
     escape() {
@@ -386,15 +487,35 @@ async function openPage(scriptText, api) {
     const facts = byId('facts');
     facts.replaceChildren();
     const refused = spawnRefs.filter(({ verdict }) => json.verdicts[verdict]?.name !== 'valid').length;
-    if (refused > 0) facts.append(element('li', {}, element('button', { type: 'button', id: 'refused-fact',
-      text: `${grouped(refused)} of ${grouped(spawnRefs.length)} spawns are not valid`, on: { click: () => {
-        tabs.open('Spawns');
-        byId('sheet-tabs').querySelector('[data-panel=answers]').click();
-        byId('spawn-rows').querySelector('button')?.click();
-      } } })));
-    else if (spawnRefs.length > 0) facts.append(element('li', { text: `all ${grouped(spawnRefs.length)} spawns are valid` }));
-    if (json.world.share < 1) facts.append(element('li', { id: 'simplified', title: 'Verdicts, reasons and heights of poses are those of ' +
-      'the whole world.', text: `World simplified to ${percent(json.world.share)}; verdicts are exact` }));
+    if (refused > 0)
+      facts.append(
+        element(
+          'li',
+          {},
+          element('button', {
+            type: 'button',
+            id: 'refused-fact',
+            text: `${grouped(refused)} of ${grouped(spawnRefs.length)} spawns are not valid`,
+            on: {
+              click: () => {
+                tabs.open('Spawns');
+                byId('sheet-tabs').querySelector('[data-panel=answers]').click();
+                byId('spawn-rows').querySelector('button')?.click();
+              },
+            },
+          }),
+        ),
+      );
+    else if (spawnRefs.length > 0)
+      facts.append(element('li', { text: `all ${grouped(spawnRefs.length)} spawns are valid` }));
+    if (json.world.share < 1)
+      facts.append(
+        element('li', {
+          id: 'simplified',
+          title: 'Verdicts, reasons and heights of poses are those of ' + 'the whole world.',
+          text: `World simplified to ${percent(json.world.share)}; verdicts are exact`,
+        }),
+      );
   }
 
   // First picture
@@ -405,7 +526,8 @@ async function openPage(scriptText, api) {
   });
   setUpSheet(view);
   view.canvas.addEventListener('webglcontextlost', () =>
-    notice('The browser has stopped the graphics of this page. Load the page again.'));
+    notice('The browser has stopped the graphics of this page. Load the page again.'),
+  );
   toolbar.fill(json, licences);
   view.beforeRender(() => verdictLayer.aim(view));
   view.onRender(overlay);
@@ -424,8 +546,12 @@ async function openPage(scriptText, api) {
     pickingReady: picking.ready,
     pick,
     placeAt,
-    answerAt(layer, pose) { return layerAnswer(json, state.layers[layer], pose); },
-    select(list, index) { select(spawnAnswer(json, state.spawns[list], index), { list, index }); },
+    answerAt(layer, pose) {
+      return layerAnswer(json, state.layers[layer], pose);
+    },
+    select(list, index) {
+      select(spawnAnswer(json, state.spawns[list], index), { list, index });
+    },
     project: (place) => view.project(local(place)),
     answer: () => state.answer,
     answerCsv: () => answerRow(state.answer),
@@ -435,8 +561,12 @@ async function openPage(scriptText, api) {
     isFlying: cameraViews.isFlying,
     target: () => view.controls.target.toArray().map((value, axis) => value + origin[axis]),
     statistics: () => ({
-      drawCalls: view.renderer.info.render.calls, triangles: view.renderer.info.render.triangles,
-      bytesUploaded: view.uploads.bytes, loadMilliseconds, decodeMilliseconds, frameMilliseconds: api.turn(5),
+      drawCalls: view.renderer.info.render.calls,
+      triangles: view.renderer.info.render.triangles,
+      bytesUploaded: view.uploads.bytes,
+      loadMilliseconds,
+      decodeMilliseconds,
+      frameMilliseconds: api.turn(5),
     }),
     /** Turns the view by some pictures and returns the mean milliseconds of one. */
     turn(pictures) {
@@ -454,7 +584,15 @@ async function openPage(scriptText, api) {
       const gl = view.renderer.getContext();
       const color = new Uint8Array(4);
       const ratio = shared.pixelRatio.value;
-      gl.readPixels(Math.round(x * ratio), Math.round((view.canvas.clientHeight - y) * ratio), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, color);
+      gl.readPixels(
+        Math.round(x * ratio),
+        Math.round((view.canvas.clientHeight - y) * ratio),
+        1,
+        1,
+        gl.RGBA,
+        gl.UNSIGNED_BYTE,
+        color,
+      );
       return [...color.subarray(0, 3)];
     },
     runs: () => live?.runs ?? [],
@@ -463,12 +601,15 @@ async function openPage(scriptText, api) {
 
 // Relative to the origin. A map without bounds in some direction has those of its meshes.
 function worldBounds({ map, world, origin }) {
-  const bound = (side, pick, ofMesh) => [0, 1, 2].map((axis) => {
-    const value = map.bounds[side][axis];
-    return Number.isFinite(value) ? value - origin[axis] : pick(...world.meshes.map((mesh) => ofMesh(mesh, axis)));
-  });
-  return { min: bound('min', Math.min, ({ offset }, axis) => offset[axis]),
-           max: bound('max', Math.max, ({ offset, scale }, axis) => offset[axis] + 65535 * scale) };
+  const bound = (side, pick, ofMesh) =>
+    [0, 1, 2].map((axis) => {
+      const value = map.bounds[side][axis];
+      return Number.isFinite(value) ? value - origin[axis] : pick(...world.meshes.map((mesh) => ofMesh(mesh, axis)));
+    });
+  return {
+    min: bound('min', Math.min, ({ offset }, axis) => offset[axis]),
+    max: bound('max', Math.max, ({ offset, scale }, axis) => offset[axis] + 65535 * scale),
+  };
 }
 
 function drawnThings(json) {
@@ -483,8 +624,18 @@ function verdictColor(json, name) {
 
 function verdictCounts(verdicts, kind, json) {
   const counts = verdicts.map(() => 0);
-  if (kind === 'layers') json.layers.forEach((layer) => layer.counts.forEach((count, verdict) => { counts[verdict] += count; }));
-  else json.spawns.forEach((list) => list.verdicts.forEach((verdict) => { ++counts[verdict]; }));
+  if (kind === 'layers')
+    json.layers.forEach((layer) =>
+      layer.counts.forEach((count, verdict) => {
+        counts[verdict] += count;
+      }),
+    );
+  else
+    json.spawns.forEach((list) =>
+      list.verdicts.forEach((verdict) => {
+        ++counts[verdict];
+      }),
+    );
   return verdicts.map(({ name }, verdict) => [name, counts[verdict]]).filter(([, count]) => count > 0);
 }
 
@@ -518,7 +669,9 @@ function listenToPointer(view, { click, doubleClick, hover }) {
   };
   let down = null;
   let asked = false;
-  canvas.addEventListener('pointerdown', (event) => { down = event.isPrimary && event.button === 0 ? at(event) : null; });
+  canvas.addEventListener('pointerdown', (event) => {
+    down = event.isPrimary && event.button === 0 ? at(event) : null;
+  });
   canvas.addEventListener('pointerup', (event) => {
     if (!down) return;
     const [x, y] = at(event);

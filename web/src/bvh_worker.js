@@ -2,7 +2,7 @@
 import { BufferAttribute, BufferGeometry, DoubleSide, InterleavedBuffer, InterleavedBufferAttribute } from 'three';
 import { MeshBVH } from 'three-mesh-bvh';
 
-const OPTIONS = { indirect: true, maxLeafTris: 10 };  // indirect: triangles keep their numbers, which name their parts
+const OPTIONS = { indirect: true, maxLeafTris: 10 }; // indirect: triangles keep their numbers, which name their parts
 
 /** Answers the page's messages. Only in a worker. */
 export function answerTreeRequests() {
@@ -11,8 +11,10 @@ export function answerTreeRequests() {
     geometry.setAttribute('position', new InterleavedBufferAttribute(new InterleavedBuffer(positions, 4), 3, 0));
     geometry.setIndex(new BufferAttribute(index, 1));
     const { roots, indirectBuffer } = MeshBVH.serialize(new MeshBVH(geometry, OPTIONS), { cloneBuffers: false });
-    self.postMessage({ number, roots, indirectBuffer }, [...roots, indirectBuffer.buffer]
-      .filter((buffer) => buffer instanceof ArrayBuffer));
+    self.postMessage(
+      { number, roots, indirectBuffer },
+      [...roots, indirectBuffer.buffer].filter((buffer) => buffer instanceof ArrayBuffer),
+    );
   };
 }
 

@@ -9,7 +9,7 @@ const HALF_FIELD = Math.tan((45 * Math.PI) / 360);
 export function createCameraViews(view) {
   const { controls } = view;
   let flight = 0;
-  let end = null;  // of the flight of now
+  let end = null; // of the flight of now
 
   function moveTo(target, position) {
     const still = matchMedia('(prefers-reduced-motion: reduce)').matches;

@@ -20,15 +20,20 @@ function filled(node, { text, on = {}, ...attributes }, children) {
   for (const [name, value] of Object.entries(attributes))
     if (value !== false && value !== null && value !== undefined) node.setAttribute(name, value === true ? '' : value);
   for (const [event, listener] of Object.entries(on)) node.addEventListener(event, listener);
-  node.append(...children.filter((child) => child !== null && child !== undefined && child !== false)
-    .map((child) => (child instanceof Node ? child : visibleText(child))));
+  node.append(
+    ...children
+      .filter((child) => child !== null && child !== undefined && child !== false)
+      .map((child) => (child instanceof Node ? child : visibleText(child))),
+  );
   return node;
 }
 
 /** Returns a text with a visible sign in place of each control character, also of those that turn the direction. */
 export function visibleText(text) {
-  return String(text).replace(/[\u0000-\u0008\u000b-\u001f\u007f-\u009f\u200e\u200f\u202a-\u202e\u2066-\u2069]/g,
-                              '\ufffd');
+  return String(text).replace(
+    /[\u0000-\u0008\u000b-\u001f\u007f-\u009f\u200e\u200f\u202a-\u202e\u2066-\u2069]/g,
+    '\ufffd',
+  );
 }
 
 export const byId = (id) => document.getElementById(id);
@@ -62,7 +67,9 @@ export function notice(text) {
   box.textContent = visibleText(text);
   box.hidden = false;
   clearTimeout(notice.timer);
-  notice.timer = setTimeout(() => { box.hidden = true; }, 3500);
+  notice.timer = setTimeout(() => {
+    box.hidden = true;
+  }, 3500);
 }
 
 /** Returns a button that copies the text of textOf() and shows for a moment whether that worked. */
@@ -71,7 +78,9 @@ export function copyButton(label, textOf) {
   button.addEventListener('click', async () => {
     const copied = await copyText(textOf());
     button.textContent = copied ? 'Copied' : 'Copying is not allowed here';
-    setTimeout(() => { button.textContent = label; }, 1500);
+    setTimeout(() => {
+      button.textContent = label;
+    }, 1500);
   });
   return button;
 }

@@ -13,8 +13,8 @@ export function cutAbove(floors, index, robotHeight) {
 }
 
 /**
- * Returns {node, cutAt(z), showFloor(index), setIslands(islands)}. `heights` is [lowest, highest] of the world in the scene. `actions`:
- * setCut(z or null), flyToFloor(index), flyToIsland(index).
+ * Returns {node, cutAt(z), showFloor(index), setIslands(islands)}. `heights` is [lowest, highest] of the
+ * world in the scene. `actions`: setCut(z or null), flyToFloor(index), flyToIsland(index).
  */
 export function createFloors({ floors, islands, heights, robotHeight, actions }) {
   const [low, high] = heights;
@@ -57,8 +57,12 @@ export function createFloors({ floors, islands, heights, robotHeight, actions })
   const island = element('select', { id: 'island', 'aria-label': 'Fly to an island' });
   const islandRow = element('div', { class: 'row' }, island);
   function setIslands(next) {
-    island.replaceChildren(element('option', { value: '', text: 'Fly to an island …' }), ...next.map(({ number, area }, index) =>
-      element('option', { value: index, text: `Island ${number}: ${rounded(area, 1)} m²` })));
+    island.replaceChildren(
+      element('option', { value: '', text: 'Fly to an island …' }),
+      ...next.map(({ number, area }, index) =>
+        element('option', { value: index, text: `Island ${number}: ${rounded(area, 1)} m²` }),
+      ),
+    );
     islandRow.hidden = next.length === 0;
   }
   setIslands(islands);
@@ -66,9 +70,14 @@ export function createFloors({ floors, islands, heights, robotHeight, actions })
     if (island.value !== '') actions.flyToIsland(Number(island.value));
   });
 
-  const node = element('section', { class: 'block' }, element('h2', { text: 'Floors' }),
-    floors.length > 0 && element('div', { class: 'row', role: 'group', 'aria-label': 'Floors' }, everything, ...buttons),
+  const node = element(
+    'section',
+    { class: 'block' },
+    element('h2', { text: 'Floors' }),
+    floors.length > 0 &&
+      element('div', { class: 'row', role: 'group', 'aria-label': 'Floors' }, everything, ...buttons),
     element('label', { class: 'control' }, element('span', {}, 'Cut the world at a height', value), slider),
-    islandRow);
+    islandRow,
+  );
   return { node, cutAt, showFloor, setIslands };
 }

@@ -4,15 +4,20 @@ import { fillHelp } from './help.js';
 
 /** Returns the toolbar over the map. `actions`: top(), isometric(), measure(). */
 export function createToolbar(actions) {
-  const button = (text, title, press) => element('button', { type: 'button', text, title, 'aria-pressed': 'false', on: { click: press } });
+  const button = (text, title, press) =>
+    element('button', { type: 'button', text, title, 'aria-pressed': 'false', on: { click: press } });
   const top = button('Top', 'Seen from above (T)', () => toolbar.top());
   const isometric = button('Isometric', 'Seen from the south-west (I)', () => toolbar.isometric());
   const measure = button('Measure', 'Distance between two places (M)', actions.measure);
   const dialog = byId('help-dialog');
   isometric.setAttribute('aria-pressed', 'true');
-  byId('toolbar').append(element('div', { class: 'group', role: 'group', 'aria-label': 'View' }, top, isometric), measure);
+  byId('toolbar').append(
+    element('div', { class: 'group', role: 'group', 'aria-label': 'View' }, top, isometric),
+    measure,
+  );
   byId('help').addEventListener('click', () => dialog.showModal());
-  const press = (pressed) => [top, isometric].forEach((other) => other.setAttribute('aria-pressed', String(other === pressed)));
+  const press = (pressed) =>
+    [top, isometric].forEach((other) => other.setAttribute('aria-pressed', String(other === pressed)));
 
   const toolbar = {
     top() {
@@ -23,7 +28,9 @@ export function createToolbar(actions) {
       press(isometric);
       actions.isometric();
     },
-    setMeasuring(on) { measure.setAttribute('aria-pressed', String(on)); },
+    setMeasuring(on) {
+      measure.setAttribute('aria-pressed', String(on));
+    },
     openHelp: () => dialog.showModal(),
     fill: (json, licences) => fillHelp(dialog, json, licences),
   };
@@ -35,8 +42,14 @@ export function createTabs(panels) {
   const buttons = panels.map(([name, node], at) => {
     node.id ||= `panel-${name.toLowerCase()}`;
     node.setAttribute('role', 'tabpanel');
-    return element('button', { type: 'button', role: 'tab', id: `tab-${name.toLowerCase()}`, 'aria-controls': node.id, text: name,
-                               on: { click: () => show(at), keydown: (event) => move(event, at) } });
+    return element('button', {
+      type: 'button',
+      role: 'tab',
+      id: `tab-${name.toLowerCase()}`,
+      'aria-controls': node.id,
+      text: name,
+      on: { click: () => show(at), keydown: (event) => move(event, at) },
+    });
   });
   function show(shown) {
     panels.forEach(([, node], at) => {
@@ -55,13 +68,23 @@ export function createTabs(panels) {
   }
   show(0);
   return {
-    node: element('div', { id: 'lists' }, element('div', { id: 'tabs', role: 'tablist', 'aria-label': 'Lists' }, ...buttons),
-                  ...panels.map(([, node]) => node)),
-    open: (name) => show(Math.max(panels.findIndex(([other]) => other === name), 0)),
+    node: element(
+      'div',
+      { id: 'lists' },
+      element('div', { id: 'tabs', role: 'tablist', 'aria-label': 'Lists' }, ...buttons),
+      ...panels.map(([, node]) => node),
+    ),
+    open: (name) =>
+      show(
+        Math.max(
+          panels.findIndex(([other]) => other === name),
+          0,
+        ),
+      ),
   };
 }
 
-/** Follows the system's choice of light and dark until the button is pressed. `changed(dark)` is called at each change. */
+/** Follows the system's choice of light and dark until the button is pressed. Each change calls `changed(dark)`. */
 export function setUpTheme(changed) {
   const system = matchMedia('(prefers-color-scheme: dark)');
   let chosen = null;
@@ -89,9 +112,11 @@ export function setUpSheet(view) {
     }
     view.requestRender();
   };
-  buttons.forEach((button) => button.addEventListener('click', (event) => {
-    // A second press by hand closes the sheet; a press by the page opens it only.
-    show(event.isTrusted && button.getAttribute('aria-pressed') === 'true' ? null : button);
-  }));
+  buttons.forEach((button) =>
+    button.addEventListener('click', (event) => {
+      // A second press by hand closes the sheet; a press by the page opens it only.
+      show(event.isTrusted && button.getAttribute('aria-pressed') === 'true' ? null : button);
+    }),
+  );
   show(buttons[0]);
 }

@@ -1,16 +1,32 @@
 // Keys of the page. Keys of form fields and of open dialogs stay theirs.
 import { byId } from './dom.js';
 
-const STEP = 0.1;   // share of the view
-const TURN = 0.15;  // rad
+const STEP = 0.1; // share of the view
+const TURN = 0.15; // rad
 
 export function listenToKeys({ cameraViews, floors, toolbar, measure, fly, enter, escape, help }) {
-  const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
-                  a: [-1, 0], d: [1, 0], w: [0, 1], s: [0, -1] };
+  const moves = {
+    ArrowLeft: [-1, 0],
+    ArrowRight: [1, 0],
+    ArrowUp: [0, 1],
+    ArrowDown: [0, -1],
+    a: [-1, 0],
+    d: [1, 0],
+    w: [0, 1],
+    s: [0, -1],
+  };
   const others = {
-    q: () => cameraViews.turn(TURN, 0), e: () => cameraViews.turn(-TURN, 0),
-    '+': () => cameraViews.zoom(1.25), '=': () => cameraViews.zoom(1.25), '-': () => cameraViews.zoom(0.8),
-    t: toolbar.top, i: toolbar.isometric, m: () => measure.toggle(), f: fly, '?': help, 0: () => floors.showFloor(-1),
+    q: () => cameraViews.turn(TURN, 0),
+    e: () => cameraViews.turn(-TURN, 0),
+    '+': () => cameraViews.zoom(1.25),
+    '=': () => cameraViews.zoom(1.25),
+    '-': () => cameraViews.zoom(0.8),
+    t: toolbar.top,
+    i: toolbar.isometric,
+    m: () => measure.toggle(),
+    f: fly,
+    '?': help,
+    0: () => floors.showFloor(-1),
   };
 
   document.addEventListener('keydown', (event) => {
@@ -40,7 +56,9 @@ export function listenToKeys({ cameraViews, floors, toolbar, measure, fly, enter
     event.preventDefault();
   });
   const canvas = byId('canvas');
-  const crosshair = () => { byId('crosshair').hidden = !canvas.matches(':focus-visible'); };
+  const crosshair = () => {
+    byId('crosshair').hidden = !canvas.matches(':focus-visible');
+  };
   canvas.addEventListener('focus', crosshair);
   canvas.addEventListener('blur', crosshair);
 }

@@ -27,9 +27,22 @@ export function readLayer(pack, json) {
   const verdict = pack.array(json.verdict);
   const optional = (description) => lazily(() => (description ? pack.array(description) : null));
   const layer = {
-    name: json.name, stance: json.stance, yaw: json.yaw, counts: json.counts, count: json.count,
-    grid, z0, unit, cell, z, ground, verdict,
-    hit: optional(json.hit), roll: optional(json.roll), pitch: optional(json.pitch), island: optional(json.island),
+    name: json.name,
+    stance: json.stance,
+    yaw: json.yaw,
+    counts: json.counts,
+    count: json.count,
+    grid,
+    z0,
+    unit,
+    cell,
+    z,
+    ground,
+    verdict,
+    hit: optional(json.hit),
+    roll: optional(json.roll),
+    pitch: optional(json.pitch),
+    island: optional(json.island),
     hasIslands: Boolean(json.island),
     quantities: (json.quantities ?? []).map((quantity) => ({ ...quantity, values: optional(quantity.values) })),
   };
@@ -46,7 +59,8 @@ function tiltQuantity(layer) {
     const [roll, pitch] = [layer.roll(), layer.pitch()];
     const angle = Math.PI / 32767;
     return Uint16Array.from(roll, (value, pose) =>
-      Math.round(Math.acos(Math.cos(value * angle) * Math.cos(pitch[pose] * angle)) / scale));
+      Math.round(Math.acos(Math.cos(value * angle) * Math.cos(pitch[pose] * angle)) / scale),
+    );
   });
   return { name: 'tilt', unit: 'rad', scale, offset: 0, values };
 }
@@ -112,8 +126,7 @@ export function drawnHeight(layer, pose) {
 /** Returns the stored heights at which poses are drawn, in units of the layer. */
 export function drawnValues(layer) {
   const heights = layer.ground.slice();
-  for (let pose = 0; pose < layer.count; ++pose)
-    if (heights[pose] === NO_GROUND) heights[pose] = layer.z[pose];
+  for (let pose = 0; pose < layer.count; ++pose) if (heights[pose] === NO_GROUND) heights[pose] = layer.z[pose];
   return heights;
 }
 
@@ -125,7 +138,9 @@ export function poseNumbers(layer, pose) {
     x: grid.x0 + (layer.cell[pose] % grid.cols) * grid.step,
     y: grid.y0 + Math.floor(layer.cell[pose] / grid.cols) * grid.step,
     z: layer.z0 + layer.unit * layer.z[pose],
-    roll: angle(layer.roll), pitch: angle(layer.pitch), yaw: layer.yaw,
+    roll: angle(layer.roll),
+    pitch: angle(layer.pitch),
+    yaw: layer.yaw,
   };
 }
 
@@ -185,7 +200,8 @@ function* ringAround(col, row, ring) {
 
 /**
  * Returns for each pose the slope of the ground in x and y from the neighbouring poses, as two bytes: 128 + 64 · slope.
- * The squares of the layer lie on the ground with it. `heights` are drawnValues(layer). Slopes beyond ±2 count as steps, not as slopes.
+ * With it, the squares of the layer lie on the ground. `heights` are drawnValues(layer). Slopes beyond ±2 count as steps,
+ * not as slopes.
  */
 export function groundSlopes(layer, heights) {
   const { grid, cell, count } = layer;
@@ -194,7 +210,8 @@ export function groundSlopes(layer, heights) {
   const starts = layer.columnStarts();
   if (!starts) return slopes;
   const reach = (2 * step) / layer.unit;
-  const rise = (pose, column) => {  // of the neighbour nearest in height, NaN without one
+  const rise = (pose, column) => {
+    // of the neighbour nearest in height, NaN without one
     let least = NaN;
     for (let other = starts[column]; other < starts[column + 1]; ++other) {
       const difference = heights[other] - heights[pose];
@@ -211,8 +228,10 @@ export function groundSlopes(layer, heights) {
     const column = cell[pose];
     const c = column % cols;
     const dx = along(c > 0 ? rise(pose, column - 1) : NaN, c + 1 < cols ? rise(pose, column + 1) : NaN);
-    const dy = along(column >= cols ? rise(pose, column - cols) : NaN,
-                     column + cols < starts.length - 1 ? rise(pose, column + cols) : NaN);
+    const dy = along(
+      column >= cols ? rise(pose, column - cols) : NaN,
+      column + cols < starts.length - 1 ? rise(pose, column + cols) : NaN,
+    );
     slopes[2 * pose] = 128 + Math.max(-127, Math.min(127, Math.round(dx * perUnit)));
     slopes[2 * pose + 1] = 128 + Math.max(-127, Math.min(127, Math.round(dy * perUnit)));
   }

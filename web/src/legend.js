@@ -14,7 +14,8 @@ export function verdictSwatch(verdict, pattern) {
 const plainSwatch = (color) => verdictSwatch({ color }, null);
 
 /**
- * Returns {node, showLayer(layer)} of the legend. `actions`: toggleVerdict(index, on), colorBy({mode, quantity, range}),
+ * Returns {node, showLayer(layer, index), colorBy(how), swatch(verdict)} of the legend. `islands()` and `layers()` are
+ * those of now. `actions`: toggleVerdict(index, on), colorBy({mode, quantity, range}),
  * setPatterns(on), setLayer(index), setOpacity(share), show(label, on).
  */
 export function createLegend({ verdicts, islands, labels, layers, heights, actions }) {
@@ -27,8 +28,12 @@ export function createLegend({ verdicts, islands, labels, layers, heights, actio
   const choice = element('select', { 'aria-label': 'What the colours of the layer show', id: 'color-by' });
   const scale = element('div');
   const list = element('div', { id: 'legend', role: 'group', 'aria-label': 'Verdicts' });
-  const heading = element('label', { class: 'control' }, element('span', {}, 'Heading', element('output')),
-                          element('input', { type: 'range', id: 'heading', min: 0, step: 1 }));
+  const heading = element(
+    'label',
+    { class: 'control' },
+    element('span', {}, 'Heading', element('output')),
+    element('input', { type: 'range', id: 'heading', min: 0, step: 1 }),
+  );
   const headingSlider = heading.querySelector('input');
   headingSlider.addEventListener('input', () => actions.setLayer(Number(headingSlider.value)));
   choice.addEventListener('change', () => recolor(choice.value));
@@ -54,8 +59,14 @@ export function createLegend({ verdicts, islands, labels, layers, heights, actio
   }
 
   function fillChoice() {
-    const options = [['verdict', 'Verdict'], ...(layer?.quantities ?? []).map((quantity, at) =>
-      [String(at), `${quantity.name[0].toUpperCase()}${quantity.name.slice(1)}`]), ['height', 'Height of the ground']];
+    const options = [
+      ['verdict', 'Verdict'],
+      ...(layer?.quantities ?? []).map((quantity, at) => [
+        String(at),
+        `${quantity.name[0].toUpperCase()}${quantity.name.slice(1)}`,
+      ]),
+      ['height', 'Height of the ground'],
+    ];
     if (layer?.hasIslands) options.push(['island', 'Island']);
     if (!options.some(([value]) => value === way)) way = 'verdict';
     choice.replaceChildren(...options.map(([value, text]) => element('option', { value, text })));
@@ -63,21 +74,29 @@ export function createLegend({ verdicts, islands, labels, layers, heights, actio
   }
 
   function fillList() {
-    list.replaceChildren(...verdicts.map((verdict, index) => {
-      const count = layer?.counts[index] ?? 0;
-      if (count === 0) return null;
-      const box = element('input', { type: 'checkbox', 'data-verdict': verdict.name });
-      box.checked = !hidden.has(index);
-      box.addEventListener('change', () => {
-        if (box.checked) hidden.delete(index);
-        else hidden.add(index);
-        actions.toggleVerdict(index, box.checked);
-      });
-      return element('label', { class: 'check', title: verdict.words }, box,
-                     verdictSwatch(verdict, patternsOn ? patterns[index] : null),
-                     element('span', { class: 'words', text: verdict.name.replace(/_/g, ' ') }),
-                     element('span', { class: 'count', text: grouped(count) }));
-    }).filter(Boolean));
+    list.replaceChildren(
+      ...verdicts
+        .map((verdict, index) => {
+          const count = layer?.counts[index] ?? 0;
+          if (count === 0) return null;
+          const box = element('input', { type: 'checkbox', 'data-verdict': verdict.name });
+          box.checked = !hidden.has(index);
+          box.addEventListener('change', () => {
+            if (box.checked) hidden.delete(index);
+            else hidden.add(index);
+            actions.toggleVerdict(index, box.checked);
+          });
+          return element(
+            'label',
+            { class: 'check', title: verdict.words },
+            box,
+            verdictSwatch(verdict, patternsOn ? patterns[index] : null),
+            element('span', { class: 'words', text: verdict.name.replace(/_/g, ' ') }),
+            element('span', { class: 'count', text: grouped(count) }),
+          );
+        })
+        .filter(Boolean),
+    );
     if (list.children.length === 0)
       list.append(element('p', { class: 'quiet', text: 'This page has no layer of verdicts.' }));
   }
@@ -97,12 +116,32 @@ export function createLegend({ verdicts, islands, labels, layers, heights, actio
     return element('label', { class: 'check' }, box, element('span', { class: 'words', text: label }));
   });
 
-  const node = element('div', {},
-    element('section', { class: 'block' }, element('h2', { text: 'Where the robot can stand' }), list,
-      element('label', { class: 'check' }, patternBox, element('span', { class: 'words', text: 'Patterns (for greyscale)' })),
-      element('label', { class: 'control' }, element('span', { text: 'Colours show' }), choice), scale, heading),
-    element('section', { class: 'block' }, element('h2', { text: 'World' }), ...labelBoxes,
-      element('label', { class: 'control' }, element('span', { text: 'Strength of the colours' }), opacity)));
+  const node = element(
+    'div',
+    {},
+    element(
+      'section',
+      { class: 'block' },
+      element('h2', { text: 'Where the robot can stand' }),
+      list,
+      element(
+        'label',
+        { class: 'check' },
+        patternBox,
+        element('span', { class: 'words', text: 'Patterns (for greyscale)' }),
+      ),
+      element('label', { class: 'control' }, element('span', { text: 'Colours show' }), choice),
+      scale,
+      heading,
+    ),
+    element(
+      'section',
+      { class: 'block' },
+      element('h2', { text: 'World' }),
+      ...labelBoxes,
+      element('label', { class: 'control' }, element('span', { text: 'Strength of the colours' }), opacity),
+    ),
+  );
 
   return {
     node,
@@ -112,7 +151,8 @@ export function createLegend({ verdicts, islands, labels, layers, heights, actio
       heading.hidden = layers().length < 2;
       headingSlider.max = layers().length - 1;
       headingSlider.value = index;
-      if (next) heading.querySelector('output').textContent = `${rounded((next.yaw * 180) / Math.PI, 1)}° (${next.name})`;
+      if (next)
+        heading.querySelector('output').textContent = `${rounded((next.yaw * 180) / Math.PI, 1)}° (${next.name})`;
       headingSlider.setAttribute('aria-valuetext', next?.name ?? '');
       fillChoice();
       fillList();
@@ -127,21 +167,42 @@ export function createLegend({ verdicts, islands, labels, layers, heights, actio
 }
 
 function ramp([low, high], unit) {
-  const stops = Array.from({ length: 11 }, (_, at) =>
-    `rgb(${viridis(at / 10).map((value) => Math.round(255 * value)).join(' ')})`);
-  const bar = element('div', { class: 'ramp', role: 'img',
-                               'aria-label': `Scale from ${withUnit(low, unit)} to ${withUnit(high, unit)}` });
+  const stops = Array.from(
+    { length: 11 },
+    (_, at) =>
+      `rgb(${viridis(at / 10)
+        .map((value) => Math.round(255 * value))
+        .join(' ')})`,
+  );
+  const bar = element('div', {
+    class: 'ramp',
+    role: 'img',
+    'aria-label': `Scale from ${withUnit(low, unit)} to ${withUnit(high, unit)}`,
+  });
   bar.style.background = `linear-gradient(to right, ${stops.join(', ')})`;
   const ticks = [0, 0.25, 0.5, 0.75, 1].map((share) =>
-    element('span', { text: withUnit(Number((low + share * (high - low)).toPrecision(3)), unit) }));
+    element('span', { text: withUnit(Number((low + share * (high - low)).toPrecision(3)), unit) }),
+  );
   return [bar, element('div', { class: 'ticks' }, ...ticks)];
 }
 
 function islandLegend(islands) {
-  const rows = islands.slice(0, 6).map((island, at) => [ISLAND_COLORS[at], `island ${island.number}`,
-                                                        `${rounded(island.area, 1)} m²`]);
+  const rows = islands
+    .slice(0, 6)
+    .map((island, at) => [ISLAND_COLORS[at], `island ${island.number}`, `${rounded(island.area, 1)} m²`]);
   if (islands.length > 6) rows.push([ISLAND_COLORS[6], 'other islands', `${islands.length - 6}`]);
   rows.push([NO_ISLAND_COLOR, 'on no island', '']);
-  return element('div', {}, ...rows.map(([color, words, count]) => element('div', { class: 'check' }, plainSwatch(color),
-    element('span', { class: 'words', text: words }), element('span', { class: 'count', text: count }))));
+  return element(
+    'div',
+    {},
+    ...rows.map(([color, words, count]) =>
+      element(
+        'div',
+        { class: 'check' },
+        plainSwatch(color),
+        element('span', { class: 'words', text: words }),
+        element('span', { class: 'count', text: count }),
+      ),
+    ),
+  );
 }

@@ -6,7 +6,10 @@ export const MARK_COLUMNS = ['x', 'y', 'z', 'roll', 'pitch', 'yaw', 'name', 'mar
 
 /** Returns marks as the text of a CSV file. A mark is {pose, name, mark, note}. */
 export function marksCsv(marks) {
-  return csv(MARK_COLUMNS, marks.map(({ pose, name, mark, note }) => [...pose, name, mark, note]));
+  return csv(
+    MARK_COLUMNS,
+    marks.map(({ pose, name, mark, note }) => [...pose, name, mark, note]),
+  );
 }
 
 /** Returns {node, marks, add(mark)}. `actions`: changed(marks), fly(mark), fileName(). */
@@ -14,15 +17,37 @@ export function createMarks(actions) {
   const marks = [];
   let saved = true;
   const rows = element('tbody');
-  const save = element('button', { type: 'button', class: 'main', id: 'save-marks', text: 'Save as CSV', on: { click: () => {
-    saveFile(actions.fileName(), marksCsv(marks), 'text/csv');
-    saved = true;
-  } } });
-  const empty = element('p', { class: 'empty' },
+  const save = element('button', {
+    type: 'button',
+    class: 'main',
+    id: 'save-marks',
+    text: 'Save as CSV',
+    on: {
+      click: () => {
+        saveFile(actions.fileName(), marksCsv(marks), 'text/csv');
+        saved = true;
+      },
+    },
+  });
+  const empty = element(
+    'p',
+    { class: 'empty' },
     'Click a place or a spawn, and press Good or Bad in its answer. The CSV file is input of ',
-    element('code', { text: 'spawnfield check' }), ' and of ', element('code', { text: 'spawnfield sample --avoid' }), '.');
-  const table = element('table', { id: 'mark-rows' }, element('thead', {}, element('tr', {},
-    ...['Mark', 'Name and note', ''].map((text) => element('th', { scope: 'col', text })))), rows);
+    element('code', { text: 'spawnfield check' }),
+    ' and of ',
+    element('code', { text: 'spawnfield sample --avoid' }),
+    '.',
+  );
+  const table = element(
+    'table',
+    { id: 'mark-rows' },
+    element(
+      'thead',
+      {},
+      element('tr', {}, ...['Mark', 'Name and note', ''].map((text) => element('th', { scope: 'col', text }))),
+    ),
+    rows,
+  );
   const node = element('div', { class: 'block' }, empty, table, element('div', { class: 'row' }, save));
   save.parentElement.style.marginTop = '10px';
   window.addEventListener('beforeunload', (event) => {
@@ -32,15 +57,32 @@ export function createMarks(actions) {
   function fill() {
     empty.hidden = marks.length > 0;
     table.hidden = save.hidden = marks.length === 0;
-    rows.replaceChildren(...marks.map((mark, at) => element('tr', {},
-      element('td', { text: mark.mark === 'good' ? '+ good' : '− bad' }),
-      element('td', {}, element('strong', { text: mark.name }), mark.note && `: ${mark.note}`),
-      element('td', { class: 'number' },
-        element('button', { type: 'button', text: 'Fly', on: { click: () => actions.fly(mark) } }), ' ',
-        element('button', { type: 'button', text: 'Delete', on: { click: () => {
-          marks.splice(at, 1);
-          changed();
-        } } })))));
+    rows.replaceChildren(
+      ...marks.map((mark, at) =>
+        element(
+          'tr',
+          {},
+          element('td', { text: mark.mark === 'good' ? '+ good' : '− bad' }),
+          element('td', {}, element('strong', { text: mark.name }), mark.note && `: ${mark.note}`),
+          element(
+            'td',
+            { class: 'number' },
+            element('button', { type: 'button', text: 'Fly', on: { click: () => actions.fly(mark) } }),
+            ' ',
+            element('button', {
+              type: 'button',
+              text: 'Delete',
+              on: {
+                click: () => {
+                  marks.splice(at, 1);
+                  changed();
+                },
+              },
+            }),
+          ),
+        ),
+      ),
+    );
   }
 
   function changed() {
@@ -51,7 +93,8 @@ export function createMarks(actions) {
 
   fill();
   return {
-    node, marks,
+    node,
+    marks,
     add(mark) {
       marks.push({ ...mark, name: mark.name || `mark ${marks.length + 1}` });
       changed();

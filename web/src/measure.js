@@ -6,11 +6,13 @@ import { rounded } from './numbers.js';
 /** Returns the texts of the distance between two places: in 3D, seen from above, and in height. */
 export function distanceText(from, to) {
   const [dx, dy, dz] = to.map((value, axis) => value - from[axis]);
-  return `${rounded(Math.hypot(dx, dy, dz))} m\nseen from above ${rounded(Math.hypot(dx, dy))} m, ` +
-         `height ${dz >= 0 ? '+' : '−'}${rounded(Math.abs(dz))} m`;
+  return (
+    `${rounded(Math.hypot(dx, dy, dz))} m\nseen from above ${rounded(Math.hypot(dx, dy))} m, ` +
+    `height ${dz >= 0 ? '+' : '−'}${rounded(Math.abs(dz))} m`
+  );
 }
 
-/** Returns {active, toggle(), click(place), cancel(), update()}. Places are in the scene. `changed(active)` is called. */
+/** Returns {active, toggle(on), click(place), update()}. Places are in the scene. `changed(active)` is called. */
 export function createMeasure(view, origin, changed) {
   const label = byId('measure-label');
   let active = false;
@@ -25,12 +27,15 @@ export function createMeasure(view, origin, changed) {
       view.scene.add(line);
     }
     label.hidden = places.length === 0;
-    label.textContent = places.length === 2 ? distanceText(...places) : places.length === 1 ? 'Click the second place' : '';
+    label.textContent =
+      places.length === 2 ? distanceText(...places) : places.length === 1 ? 'Click the second place' : '';
     view.requestRender();
   }
 
   const measure = {
-    get active() { return active; },
+    get active() {
+      return active;
+    },
     toggle(on = !active) {
       active = on;
       places = [];

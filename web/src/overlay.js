@@ -3,14 +3,22 @@ import { Vector3 } from 'three';
 import { byId, svg } from './dom.js';
 import { niceBelow, rounded } from './numbers.js';
 
-const LONGEST_BAR = 150;  // CSS pixels
-const AXES = [['x', new Vector3(1, 0, 0), '#e0703a'], ['y', new Vector3(0, 1, 0), '#12a57a'],
-              ['z', new Vector3(0, 0, 1), '#3391d6']];
+const LONGEST_BAR = 150; // CSS pixels
+const AXES = [
+  ['x', new Vector3(1, 0, 0), '#e0703a'],
+  ['y', new Vector3(0, 1, 0), '#12a57a'],
+  ['z', new Vector3(0, 0, 1), '#3391d6'],
+];
 
 export function createOverlay(view) {
   const bar = byId('scale-bar');
-  const drawing = svg('svg', { viewBox: '-48 -48 96 96', width: '100%', height: '100%', role: 'img',
-                               'aria-label': 'Axes: x forward or east, y left or north, z up' });
+  const drawing = svg('svg', {
+    viewBox: '-48 -48 96 96',
+    width: '100%',
+    height: '100%',
+    role: 'img',
+    'aria-label': 'Axes: x forward or east, y left or north, z up',
+  });
   byId('gizmo').append(drawing);
   const axes = AXES.map(([name, direction, color]) => {
     const line = svg('line', { stroke: color, 'stroke-width': 3, 'stroke-linecap': 'round' });
@@ -23,13 +31,20 @@ export function createOverlay(view) {
   return function update() {
     const metres = niceBelow(LONGEST_BAR * view.metresPerPixel());
     bar.style.width = `${metres / view.metresPerPixel()}px`;
-    const text = metres >= 1000 ? `${rounded(metres / 1000)} km` : metres < 0.01 ? `${rounded(metres * 1000)} mm`
-      : metres < 1 ? `${rounded(metres * 100)} cm` : `${rounded(metres)} m`;
+    const text =
+      metres >= 1000
+        ? `${rounded(metres / 1000)} km`
+        : metres < 0.01
+          ? `${rounded(metres * 1000)} mm`
+          : metres < 1
+            ? `${rounded(metres * 100)} cm`
+            : `${rounded(metres)} m`;
     bar.firstElementChild.textContent = text;
     bar.setAttribute('aria-label', `Scale: this bar is ${text} long`);
 
     const turn = view.camera.quaternion.clone().invert();
-    const ends = axes.map((axis) => ({ ...axis, end: axis.direction.clone().applyQuaternion(turn) }))
+    const ends = axes
+      .map((axis) => ({ ...axis, end: axis.direction.clone().applyQuaternion(turn) }))
       .sort((a, b) => a.end.z - b.end.z);
     for (const { line, label, end } of ends) {
       line.setAttribute('x2', 20 * end.x);

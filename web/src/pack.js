@@ -5,9 +5,14 @@ import { MeshoptDecoder } from 'meshoptimizer/meshopt_decoder.module.js';
 const MAGIC = 'SPAWNRV1';
 const FORMAT = 'spawnfield-review/1';
 const HEAD_BYTES = 12;
-const MOST_VALUES = 1 << 28;  // of an array; a gigabyte
+const MOST_VALUES = 1 << 28; // of an array; a gigabyte
 const ARRAY_TYPES = {
-  u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i16: Int16Array, i32: Int32Array, f32: Float32Array,
+  u8: Uint8Array,
+  u16: Uint16Array,
+  u32: Uint32Array,
+  i16: Int16Array,
+  i32: Int32Array,
+  f32: Float32Array,
 };
 
 /** A pack that cannot be read. The message says what is wrong and what to do. */
@@ -21,7 +26,7 @@ const advice = 'The file is damaged or incomplete. Write it again with "spawnfie
 export function bytesFromBase64(text) {
   let binary;
   try {
-    if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);  // several times faster; browsers since 2025
+    if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text); // several times faster; browsers since 2025
     binary = atob(text.trim());
   } catch {
     throw new PackError(`The data of the page is not base64. ${advice}`);
@@ -72,8 +77,10 @@ function readJson(bytes) {
 function inflate(blocks, description, expectedBytes) {
   const { at, bytes } = description;
   if (!(at >= 0 && bytes > 0 && at + bytes <= blocks.length))
-    throw new PackError(`The data of the page ends at byte ${blocks.length} of its blocks; a block goes on to ` +
-                        `${at + bytes}. ${advice}`);
+    throw new PackError(
+      `The data of the page ends at byte ${blocks.length} of its blocks; a block goes on to ` +
+        `${at + bytes}. ${advice}`,
+    );
   const block = blocks.subarray(at, at + bytes);
   let content;
   try {
@@ -82,8 +89,9 @@ function inflate(blocks, description, expectedBytes) {
     throw new PackError(`A block of the data at byte ${at} cannot be unpacked (${error.message}). ${advice}`);
   }
   if (expectedBytes !== undefined && content.length !== expectedBytes)
-    throw new PackError(`A block of the data at byte ${at} has ${content.length} bytes, needs ${expectedBytes}. ` +
-                        advice);
+    throw new PackError(
+      `A block of the data at byte ${at} has ${content.length} bytes, needs ${expectedBytes}. ` + advice,
+    );
   if (adler32(content) !== new DataView(block.buffer, block.byteOffset + bytes - 4, 4).getUint32(0))
     throw new PackError(`A block of the data at byte ${at} has a wrong checksum. ${advice}`);
   return content;
@@ -93,7 +101,7 @@ function inflate(blocks, description, expectedBytes) {
 function adler32(bytes) {
   let low = 1;
   let high = 0;
-  for (let at = 0; at < bytes.length;) {
+  for (let at = 0; at < bytes.length; ) {
     const end = Math.min(at + 3800, bytes.length);
     for (; at < end; ++at) {
       low += bytes[at];
@@ -112,11 +120,16 @@ function decodeArray(blocks, description) {
     throw new PackError(`An array of the data has the type "${type}" and ${count} items. ${advice}`);
   const length = count * width;
   switch (coding) {
-    case 'plain': return new Type(inflate(blocks, description, length * Type.BYTES_PER_ELEMENT).buffer);
-    case 'delta': return decodeDelta(inflate(blocks, description, length * Type.BYTES_PER_ELEMENT), Type, length);
-    case 'vertex': return decodeMesh(inflate(blocks, description), new Type(length), count, 'decodeVertexBuffer');
-    case 'index': return decodeMesh(inflate(blocks, description), new Type(length), count, 'decodeIndexBuffer');
-    default: throw new PackError(`An array of the data has the unknown coding "${coding}". Write the page again.`);
+    case 'plain':
+      return new Type(inflate(blocks, description, length * Type.BYTES_PER_ELEMENT).buffer);
+    case 'delta':
+      return decodeDelta(inflate(blocks, description, length * Type.BYTES_PER_ELEMENT), Type, length);
+    case 'vertex':
+      return decodeMesh(inflate(blocks, description), new Type(length), count, 'decodeVertexBuffer');
+    case 'index':
+      return decodeMesh(inflate(blocks, description), new Type(length), count, 'decodeIndexBuffer');
+    default:
+      throw new PackError(`An array of the data has the unknown coding "${coding}". Write the page again.`);
   }
 }
 

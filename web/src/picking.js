@@ -5,18 +5,22 @@ import { partOf } from './world_mesh.js';
 import { poseMatrix } from './robot_shapes.js';
 
 /**
- * Returns {ready, isReady(), place(ray, cut), robot(ray, robots, cut)}. Places are relative to the origin. What is above
- * `cut` is not seen by a ray, nor are meshes that are not visible.
+ * Returns {ready, isReady(), setRobot(bounds), place(ray, cut), robot(ray, robots, cut)}. Places are relative to the
+ * origin. What is above `cut` is not seen by a ray, nor are meshes that are not visible.
  */
 export function createPicking(world, robotBounds, origin, scriptText) {
   let trees = null;
-  const ready = treesOf(world.meshes, scriptText).then((made) => { trees = made; });
+  const ready = treesOf(world.meshes, scriptText).then((made) => {
+    trees = made;
+  });
   let box = boxOf(robotBounds);
 
   return {
     ready,
     isReady: () => trees !== null,
-    setRobot(bounds) { box = boxOf(bounds); },
+    setRobot(bounds) {
+      box = boxOf(bounds);
+    },
     /** Returns {place, part, label, distance} or null. Needs `ready`. */
     place(ray, cut) {
       if (!trees) return null;
@@ -28,8 +32,12 @@ export function createPicking(world, robotBounds, origin, scriptText) {
         if (hit) best = { ...hit, mesh };
       });
       if (!best) return null;
-      return { place: ray.at(best.distance, new Vector3()).toArray(), distance: best.distance,
-               part: partOf(best.mesh, best.triangle), label: best.mesh.userData.label };
+      return {
+        place: ray.at(best.distance, new Vector3()).toArray(),
+        distance: best.distance,
+        part: partOf(best.mesh, best.triangle),
+        label: best.mesh.userData.label,
+      };
     },
     /** Returns {index, distance} of the first robot whose box the ray meets, or null. */
     robot(ray, robots, cut) {

@@ -7,15 +7,18 @@ const COLOR = '#d81b60';
 export function regionsText(polygons) {
   const rings = polygons.map((places) => [[...places, places[0]].map(([x, y]) => [x, y])]);
   if (rings.length === 0) return '';
-  return JSON.stringify(rings.length === 1 ? { type: 'Polygon', coordinates: rings[0] }
-    : { type: 'MultiPolygon', coordinates: rings });
+  return JSON.stringify(
+    rings.length === 1 ? { type: 'Polygon', coordinates: rings[0] } : { type: 'MultiPolygon', coordinates: rings },
+  );
 }
 
 /** Returns the polygons of a text of regionsText(), at a height. */
 export function regionsFromText(text, z) {
   if (!text) return [];
   const { type, coordinates } = JSON.parse(text);
-  return (type === 'Polygon' ? [coordinates] : coordinates).map(([ring]) => ring.slice(0, -1).map(([x, y]) => [x, y, z]));
+  return (type === 'Polygon' ? [coordinates] : coordinates).map(([ring]) =>
+    ring.slice(0, -1).map(([x, y]) => [x, y, z]),
+  );
 }
 
 /** Returns {active, begin(done), click(place), finish(), cancel(), show(polygons)}. Places are in the scene. */
@@ -30,7 +33,8 @@ export function createRegions(view, origin, changed) {
     const lines = polygons.map((places) => ({ places, color: COLOR, closed: true }));
     if (corners?.length > 1) lines.push({ places: corners, color: COLOR });
     // A single corner is shown as a short line.
-    if (corners?.length === 1) lines.push({ places: [corners[0], corners[0].map((value) => value + 0.05)], color: COLOR });
+    if (corners?.length === 1)
+      lines.push({ places: [corners[0], corners[0].map((value) => value + 0.05)], color: COLOR });
     drawn = createLines(lines, origin, { width: 3, onTop: true });
     view.scene.add(drawn);
     view.requestRender();
@@ -45,7 +49,9 @@ export function createRegions(view, origin, changed) {
   }
 
   return {
-    get active() { return corners !== null; },
+    get active() {
+      return corners !== null;
+    },
     begin(done) {
       corners = [];
       whenDone = done;
@@ -53,7 +59,8 @@ export function createRegions(view, origin, changed) {
     },
     click(place) {
       const last = corners.at(-1);
-      if (last && Math.hypot(place[0] - last[0], place[1] - last[1]) < 1e-6) return;  // the second half of a double click
+      // The second half of a double click is no corner.
+      if (last && Math.hypot(place[0] - last[0], place[1] - last[1]) < 1e-6) return;
       corners.push(place);
       redraw();
     },

@@ -1,7 +1,18 @@
 // Robots in their own shape, coloured by verdict, and markers of constant size on the screen above them.
 import {
-  BackSide, BufferAttribute, BufferGeometry, DoubleSide, Euler, GLSL3, InstancedBufferAttribute, InstancedMesh, Matrix4, Points,
-  Quaternion, ShaderMaterial, Vector3,
+  BackSide,
+  BufferAttribute,
+  BufferGeometry,
+  DoubleSide,
+  Euler,
+  GLSL3,
+  InstancedBufferAttribute,
+  InstancedMesh,
+  Matrix4,
+  Points,
+  Quaternion,
+  ShaderMaterial,
+  Vector3,
 } from 'three';
 import { inkGlsl, shadeGlsl } from './shaders.js';
 
@@ -102,17 +113,29 @@ export function robotGeometry(pack) {
   return geometry;
 }
 
-/** Returns one object for many robots: `robots` is an array of {pose, verdict}. Two draw calls: shapes and their rims. */
+/** Returns one object for many robots, an array of {pose, verdict}. Two draw calls: shapes and their rims. */
 export function createRobots(geometry, robots, shared, origin) {
   const own = new BufferGeometry();
   // Copies, because three.js frees an attribute with the first geometry that has it.
   own.setAttribute('position', geometry.attributes.position.clone());
   own.setIndex(geometry.index.clone());
-  own.setAttribute('verdict', new InstancedBufferAttribute(Float32Array.from(robots, (robot) => robot.verdict), 1));
+  own.setAttribute(
+    'verdict',
+    new InstancedBufferAttribute(
+      Float32Array.from(robots, (robot) => robot.verdict),
+      1,
+    ),
+  );
   own.computeBoundingBox();
   const uniforms = { ...shared, center: { value: own.boundingBox.getCenter(new Vector3()) } };
-  const material = (settings) => new ShaderMaterial({ glslVersion: GLSL3, vertexShader: robotVertex,
-                                                      fragmentShader: robotFragment, uniforms, ...settings });
+  const material = (settings) =>
+    new ShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: robotVertex,
+      fragmentShader: robotFragment,
+      uniforms,
+      ...settings,
+    });
   const object = new InstancedMesh(own, material({ side: DoubleSide }), Math.max(robots.length, 1));
   object.count = robots.length;
   robots.forEach(({ pose }, at) => object.setMatrixAt(at, poseMatrix(pose, origin)));
@@ -130,12 +153,24 @@ export function createRobots(geometry, robots, shared, origin) {
 /** Returns one object for many markers: `markers` is an array of {place, verdict, shape}; places are in the scene. */
 export function createMarkers(markers, shared, origin) {
   const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new BufferAttribute(
-    Float32Array.from(markers.flatMap(({ place }) => place.map((value, axis) => value - origin[axis]))), 3));
-  geometry.setAttribute('look', new BufferAttribute(
-    Float32Array.from(markers.flatMap(({ verdict, shape }) => [verdict, shape])), 2));
-  const material = new ShaderMaterial({ glslVersion: GLSL3, vertexShader: markerVertex,
-                                        fragmentShader: markerFragment, uniforms: shared, transparent: true });
+  geometry.setAttribute(
+    'position',
+    new BufferAttribute(
+      Float32Array.from(markers.flatMap(({ place }) => place.map((value, axis) => value - origin[axis]))),
+      3,
+    ),
+  );
+  geometry.setAttribute(
+    'look',
+    new BufferAttribute(Float32Array.from(markers.flatMap(({ verdict, shape }) => [verdict, shape])), 2),
+  );
+  const material = new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: markerVertex,
+    fragmentShader: markerFragment,
+    uniforms: shared,
+    transparent: true,
+  });
   const object = new Points(geometry, material);
   object.frustumCulled = false;
   object.renderOrder = 6;

@@ -1,7 +1,17 @@
 // The drawing surface: a renderer that draws only when something changed, two cameras and their controls.
 import {
-  Box3, ColorManagement, LinearSRGBColorSpace, MOUSE, OrthographicCamera, PerspectiveCamera, Raycaster, Scene, TOUCH, Vector2,
-  Vector3, WebGLRenderer,
+  Box3,
+  ColorManagement,
+  LinearSRGBColorSpace,
+  MOUSE,
+  OrthographicCamera,
+  PerspectiveCamera,
+  Raycaster,
+  Scene,
+  TOUCH,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
@@ -12,8 +22,8 @@ const FIELD_OF_VIEW = 45;
 const LARGEST_PIXEL_RATIO = 2;
 
 /**
- * Returns the view of a canvas. `bounds` is {min, max} of the world, relative to the pack's origin. Large worlds are drawn
- * without smooth edges, which would take twice as long.
+ * Returns the view of a canvas. `bounds` is {min, max} of the world, relative to the pack's origin. Large worlds are
+ * drawn without smooth edges, which would take twice as long.
  */
 export function createView(canvas, bounds, shared, isLarge) {
   const uploads = { bytes: 0 };
@@ -63,9 +73,19 @@ export function createView(canvas, bounds, shared, isLarge) {
   }
 
   const view = {
-    canvas, renderer, scene, controls, uploads, center, radius,
-    get camera() { return camera; },
-    get isTop() { return camera === orthographic; },
+    canvas,
+    renderer,
+    scene,
+    controls,
+    uploads,
+    center,
+    radius,
+    get camera() {
+      return camera;
+    },
+    get isTop() {
+      return camera === orthographic;
+    },
     requestRender() {
       if (asked) return;
       asked = true;
@@ -99,8 +119,7 @@ export function createView(canvas, bounds, shared, isLarge) {
       camera.position.copy(controls.target).add(offset.setLength(distance));
       controls.object = camera;
       controls.enableRotate = !top;
-      controls.mouseButtons = { LEFT: top ? MOUSE.PAN : MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY,
-                                RIGHT: MOUSE.PAN };
+      controls.mouseButtons = { LEFT: top ? MOUSE.PAN : MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
       controls.touches = { ONE: top ? TOUCH.PAN : TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN };
       controls.screenSpacePanning = top;
       controls.update();
@@ -137,8 +156,11 @@ export function createView(canvas, bounds, shared, isLarge) {
       camera.updateMatrixWorld();
       camera.updateProjectionMatrix();
       const seen = new Vector3(...place).project(camera);
-      return { x: ((seen.x + 1) / 2) * canvas.clientWidth, y: ((1 - seen.y) / 2) * canvas.clientHeight,
-               visible: Math.abs(seen.z) <= 1 };
+      return {
+        x: ((seen.x + 1) / 2) * canvas.clientWidth,
+        y: ((1 - seen.y) / 2) * canvas.clientHeight,
+        visible: Math.abs(seen.z) <= 1,
+      };
     },
     /** Returns the ray into the world at a CSS pixel of the canvas. */
     rayAt(x, y) {

@@ -40,9 +40,28 @@ export function createSelection(view, robot, shared, origin) {
   function contactLines(contacts) {
     const arm = Math.max(robot().boundingSphere.radius * 0.06, 0.01);
     const crosses = contacts.flatMap(([x, y, z]) => [
-      { places: [[x - arm, y, z], [x + arm, y, z]], color: SUPPORT_COLOR },
-      { places: [[x, y - arm, z], [x, y + arm, z]], color: SUPPORT_COLOR },
-      { places: [[x, y, z - arm], [x, y, z + arm]], color: SUPPORT_COLOR }]);
+      {
+        places: [
+          [x - arm, y, z],
+          [x + arm, y, z],
+        ],
+        color: SUPPORT_COLOR,
+      },
+      {
+        places: [
+          [x, y - arm, z],
+          [x, y + arm, z],
+        ],
+        color: SUPPORT_COLOR,
+      },
+      {
+        places: [
+          [x, y, z - arm],
+          [x, y, z + arm],
+        ],
+        color: SUPPORT_COLOR,
+      },
+    ]);
     const hull = { places: convexHull(contacts), color: SUPPORT_COLOR, closed: contacts.length > 2 };
     return createLines([hull, ...crosses], origin, { width: 3, onTop: true });
   }

@@ -33,15 +33,17 @@ export function sharedUniforms(verdicts) {
   const map = new DataTexture(patternPixels(patterns), PATTERN_SIZE, PATTERN_SIZE * patterns.length, RedFormat);
   map.minFilter = map.magFilter = NearestFilter;
   map.needsUpdate = true;
-  const colors = Array.from({ length: MOST_VERDICTS }, (_, verdict) =>
-    new Vector4(...rgb(verdicts[verdict]?.color), 1));
+  const colors = Array.from(
+    { length: MOST_VERDICTS },
+    (_, verdict) => new Vector4(...rgb(verdicts[verdict]?.color), 1),
+  );
   return {
-    cut: { value: 1e30 },           // height above the origin; what is above is not drawn
-    palette: { value: colors },     // colour of each verdict; the fourth value is 0 if it is switched off
+    cut: { value: 1e30 }, // height above the origin; what is above is not drawn
+    palette: { value: colors }, // colour of each verdict; the fourth value is 0 if it is switched off
     patterns: { value: 0 },
     patternMap: { value: map },
     pixelRatio: { value: 1 },
-    viewport: { value: new Vector2(1, 1) },  // size of the picture in pixels
+    viewport: { value: new Vector2(1, 1) }, // size of the picture in pixels
     dark: { value: 0 },
   };
 }

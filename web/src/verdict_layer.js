@@ -1,9 +1,25 @@
 // The layer of verdicts: all poses in one instanced draw call. Colours come from small tables, so switching verdicts
 // off or showing another quantity does not build the poses' buffers again.
 import {
-  BufferAttribute, BufferGeometry, DataTexture, GLSL3, Group, InstancedBufferGeometry, LinearFilter, Mesh, Points,
-  RGBAFormat, RGBAIntegerFormat, RGIntegerFormat, RedIntegerFormat, ShaderMaterial, UnsignedByteType, UnsignedIntType,
-  UnsignedShortType, Vector2, Vector3,
+  BufferAttribute,
+  BufferGeometry,
+  DataTexture,
+  GLSL3,
+  Group,
+  InstancedBufferGeometry,
+  LinearFilter,
+  Mesh,
+  Points,
+  RGBAFormat,
+  RGBAIntegerFormat,
+  RGIntegerFormat,
+  RedIntegerFormat,
+  ShaderMaterial,
+  UnsignedByteType,
+  UnsignedIntType,
+  UnsignedShortType,
+  Vector2,
+  Vector3,
 } from 'three';
 import { inkGlsl } from './shaders.js';
 import { ISLAND_COLORS, NO_ISLAND_COLOR, NO_VALUE_COLOR, rgb, viridis } from './palette.js';
@@ -14,7 +30,7 @@ const MODES = { verdict: 0, quantity: 1, island: 2, height: 3 };
 // square several times slower.
 const BATCH = 256;
 const TEXTURE_WIDTH = 2048;
-const SMALLEST_SQUARE = 2.5;  // pixels; where all squares are smaller, they are drawn as points
+const SMALLEST_SQUARE = 2.5; // pixels; where all squares are smaller, they are drawn as points
 
 const vertexShader = /* glsl */ `
   uniform highp usampler2D places;  // cell, height
@@ -52,7 +68,8 @@ const vertexShader = /* glsl */ `
     if (high > cut) return;
     vec2 slope = (vec2(look.yz) - 128.0) / 64.0;
     int cell = int(stored.x);
-    vec3 place = vec3(corner + spacing * (vec2(cell % cols, cell / cols) + side), high + spacing * dot(slope, side) + lift);
+    vec2 across = corner + spacing * (vec2(cell % cols, cell / cols) + side);
+    vec3 place = vec3(across, high + spacing * dot(slope, side) + lift);
     #ifdef POINTS
       place.z += 0.3 * spacing;  // instead of the offset of polygons; less than a pixel
     #endif
@@ -83,7 +100,8 @@ const fragmentShader = /* glsl */ `
   void main() {
     vec3 base = palette[verdict].rgb;
     if (mode == 1) {
-      base = amount > 65534.5 ? noValue : texture(ramp, vec2((amount - range.x) / max(range.y - range.x, 1e-9), 0.5)).rgb;
+      float share = (amount - range.x) / max(range.y - range.x, 1e-9);
+      base = amount > 65534.5 ? noValue : texture(ramp, vec2(share, 0.5)).rgb;
     } else if (mode == 2) {
       base = islandColors[amount < 0.5 ? 7 : int(min(amount, 7.0) - 0.5)];
     } else if (mode == 3) {
@@ -104,7 +122,8 @@ const fragmentShader = /* glsl */ `
 
 function rampTexture() {
   const pixels = new Uint8Array(256 * 4);
-  for (let at = 0; at < 256; ++at) pixels.set([...viridis(at / 255).map((value) => Math.round(255 * value)), 255], 4 * at);
+  for (let at = 0; at < 256; ++at)
+    pixels.set([...viridis(at / 255).map((value) => Math.round(255 * value)), 255], 4 * at);
   const texture = new DataTexture(pixels, 256, 1, RGBAFormat);
   texture.minFilter = texture.magFilter = LinearFilter;
   texture.needsUpdate = true;
@@ -112,22 +131,44 @@ function rampTexture() {
 }
 
 /**
- * Returns {object, show(layer), colorBy(how), setOpacity(share)}: the drawn layer, one draw call. `show` takes a layer of
- * layer_data.js; its textures are built once and kept as long as the layer is. `colorBy` takes {mode, quantity, range}.
- * `aim(view)` has to be called before each picture.
+ * Returns {object, show(layer), aim(view), forget(layer), colorBy(how), setOpacity(share)}: the drawn layer, one draw
+ * call. `show` takes a layer of layer_data.js; its textures are built once and kept as long as the layer is. `colorBy`
+ * takes {mode, quantity, range}. `aim` has to be called before each picture.
  */
 export function createVerdictLayer(shared, origin) {
   const uniforms = {
-    ...shared, places: { value: null }, looks: { value: null }, values: { value: noValues() }, count: { value: 0 },
-    cols: { value: 1 }, corner: { value: new Vector2() }, spacing: { value: 1 }, z0: { value: 0 }, unit: { value: 1 },
-    lift: { value: 0 }, pointScale: { value: 1 }, mode: { value: MODES.verdict }, range: { value: new Vector2(0, 1) },
-    opacity: { value: 0.75 }, ramp: { value: rampTexture() }, noValue: { value: new Vector3(...rgb(NO_VALUE_COLOR)) },
+    ...shared,
+    places: { value: null },
+    looks: { value: null },
+    values: { value: noValues() },
+    count: { value: 0 },
+    cols: { value: 1 },
+    corner: { value: new Vector2() },
+    spacing: { value: 1 },
+    z0: { value: 0 },
+    unit: { value: 1 },
+    lift: { value: 0 },
+    pointScale: { value: 1 },
+    mode: { value: MODES.verdict },
+    range: { value: new Vector2(0, 1) },
+    opacity: { value: 0.75 },
+    ramp: { value: rampTexture() },
+    noValue: { value: new Vector3(...rgb(NO_VALUE_COLOR)) },
     islandColors: { value: [...ISLAND_COLORS, NO_ISLAND_COLOR].map((color) => new Vector3(...rgb(color))) },
   };
-  const material = (defines) => new ShaderMaterial({
-    glslVersion: GLSL3, vertexShader, fragmentShader, uniforms, defines, transparent: true, side: 2,
-    polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -8,
-  });
+  const material = (defines) =>
+    new ShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader,
+      fragmentShader,
+      uniforms,
+      defines,
+      transparent: true,
+      side: 2,
+      polygonOffset: true,
+      polygonOffsetFactor: -2,
+      polygonOffsetUnits: -8,
+    });
   const squares = new Mesh(batchGeometry(), material({}));
   const points = new Points(new BufferGeometry(), material({ POINTS: 1 }));
   const object = new Group();
@@ -196,7 +237,9 @@ export function createVerdictLayer(shared, origin) {
         uniforms.range.value.set(range[0] - origin[2], range[1] - origin[2]);
       }
     },
-    setOpacity(share) { uniforms.opacity.value = share; },
+    setOpacity(share) {
+      uniforms.opacity.value = share;
+    },
   };
 }
 
@@ -205,7 +248,10 @@ function batchGeometry() {
   const geometry = new InstancedBufferGeometry();
   const index = new Uint16Array(6 * BATCH);
   for (let square = 0; square < BATCH; ++square)
-    index.set([0, 1, 2, 2, 1, 3].map((corner) => 4 * square + corner), 6 * square);
+    index.set(
+      [0, 1, 2, 2, 1, 3].map((corner) => 4 * square + corner),
+      6 * square,
+    );
   geometry.setIndex(new BufferAttribute(index, 1));
   return geometry;
 }
@@ -221,7 +267,9 @@ function poseTexture(values, width, Type, format, type, internalFormat) {
   texture.unpackAlignment = 1;
   texture.needsUpdate = true;
   // The graphics memory has the values now; a second copy would double the page's memory.
-  texture.onUpdate = () => { texture.image.data = null; };
+  texture.onUpdate = () => {
+    texture.image.data = null;
+  };
   return texture;
 }
 
@@ -239,6 +287,8 @@ function poseTextures(layer) {
     looks[4 * pose + 1] = slopes[2 * pose];
     looks[4 * pose + 2] = slopes[2 * pose + 1];
   }
-  return { places: poseTexture(places, 2, Uint32Array, RGIntegerFormat, UnsignedIntType, 'RG32UI'),
-           looks: poseTexture(looks, 4, Uint8Array, RGBAIntegerFormat, UnsignedByteType, 'RGBA8UI') };
+  return {
+    places: poseTexture(places, 2, Uint32Array, RGIntegerFormat, UnsignedIntType, 'RG32UI'),
+    looks: poseTexture(looks, 4, Uint8Array, RGBAIntegerFormat, UnsignedByteType, 'RGBA8UI'),
+  };
 }

@@ -1,6 +1,14 @@
 // The world: one mesh, and one draw call, for each label.
 import {
-  BufferAttribute, BufferGeometry, Color, DoubleSide, GLSL3, Group, InterleavedBuffer, InterleavedBufferAttribute, Mesh,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  GLSL3,
+  Group,
+  InterleavedBuffer,
+  InterleavedBufferAttribute,
+  Mesh,
   ShaderMaterial,
 } from 'three';
 import { shadeGlsl } from './shaders.js';
@@ -81,12 +89,21 @@ function labelMesh(pack, json, shared, [low, high]) {
   geometry.setIndex(new BufferAttribute(pack.array(json.indices), 1));
   const look = LOOKS[json.label] ?? LOOKS.obstacle;
   const material = new ShaderMaterial({
-    glslVersion: GLSL3, vertexShader, fragmentShader, side: DoubleSide,
-    transparent: look.opacity < 1, depthWrite: look.opacity === 1,
+    glslVersion: GLSL3,
+    vertexShader,
+    fragmentShader,
+    side: DoubleSide,
+    transparent: look.opacity < 1,
+    depthWrite: look.opacity === 1,
     uniforms: {
-      cut: shared.cut, dark: shared.dark, opacity: { value: look.opacity }, heights: { value: [low, high] },
-      low: { value: raw(look.low) }, high: { value: raw(look.high) },
-      darkLow: { value: raw(look.darkLow) }, darkHigh: { value: raw(look.darkHigh) },
+      cut: shared.cut,
+      dark: shared.dark,
+      opacity: { value: look.opacity },
+      heights: { value: [low, high] },
+      low: { value: raw(look.low) },
+      high: { value: raw(look.high) },
+      darkLow: { value: raw(look.darkLow) },
+      darkHigh: { value: raw(look.darkHigh) },
     },
   });
   const mesh = new Mesh(geometry, material);
@@ -119,7 +136,10 @@ export function partRuns(mesh, part) {
 
 /** Returns {center, radius} of a part, relative to the pack's origin, or null if no mesh has it. */
 export function partBounds(meshes, part) {
-  const [least, most] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  const [least, most] = [
+    [Infinity, Infinity, Infinity],
+    [-Infinity, -Infinity, -Infinity],
+  ];
   for (const mesh of meshes) {
     const { position } = mesh.geometry.attributes;
     const index = mesh.geometry.index.array;
@@ -134,8 +154,10 @@ export function partBounds(meshes, part) {
     }
   }
   if (least[0] > most[0]) return null;
-  return { center: least.map((low, axis) => (low + most[axis]) / 2),
-           radius: Math.hypot(...least.map((low, axis) => most[axis] - low)) / 2 };
+  return {
+    center: least.map((low, axis) => (low + most[axis]) / 2),
+    radius: Math.hypot(...least.map((low, axis) => most[axis] - low)) / 2,
+  };
 }
 
 function highlightMesh(mesh, part, shared) {
@@ -146,8 +168,14 @@ function highlightMesh(mesh, part, shared) {
   geometry.setIndex(mesh.geometry.index);
   runs.forEach(([first, end]) => geometry.addGroup(3 * first, 3 * (end - first), 0));
   const material = new ShaderMaterial({
-    glslVersion: GLSL3, vertexShader, fragmentShader: highlightShader, side: DoubleSide, uniforms: { cut: shared.cut },
-    polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -2,
+    glslVersion: GLSL3,
+    vertexShader,
+    fragmentShader: highlightShader,
+    side: DoubleSide,
+    uniforms: { cut: shared.cut },
+    polygonOffset: true,
+    polygonOffsetFactor: -1,
+    polygonOffsetUnits: -2,
   });
   const marked = new Mesh(geometry, [material]);
   marked.position.copy(mesh.position);
