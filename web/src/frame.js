@@ -84,7 +84,10 @@ export function createTabs(panels) {
   };
 }
 
-/** Follows the system's choice of light and dark until the button is pressed. Each change calls `changed(dark)`. */
+/**
+ * Follows the system's choice of light and dark until the button is pressed. Each change calls `changed(dark, color)`,
+ * with the colour behind the map.
+ */
 export function setUpTheme(changed) {
   const system = matchMedia('(prefers-color-scheme: dark)');
   let chosen = null;
@@ -92,7 +95,7 @@ export function setUpTheme(changed) {
     const dark = chosen ?? system.matches;
     document.documentElement.dataset.theme = dark ? 'dark' : 'light';
     byId('theme').textContent = dark ? 'Light' : 'Dark';
-    changed(dark);
+    changed(dark, getComputedStyle(document.documentElement).getPropertyValue('--map').trim());
   };
   system.addEventListener('change', apply);
   byId('theme').addEventListener('click', () => {
@@ -102,21 +105,20 @@ export function setUpTheme(changed) {
   apply();
 }
 
-/** Phones show one of the two panels below the map, or none. */
+/** Returns {open(panel)}: phones show one of the two panels below the map, or none. A second press closes it. */
 export function setUpSheet(view) {
   const buttons = [...byId('sheet-tabs').querySelectorAll('button')];
-  const show = (shown) => {
+  const open = (panel) => {
     for (const button of buttons) {
-      button.setAttribute('aria-pressed', String(button === shown));
-      byId(button.dataset.panel).classList.toggle('open', button === shown);
+      button.setAttribute('aria-pressed', String(button.dataset.panel === panel));
+      byId(button.dataset.panel).classList.toggle('open', button.dataset.panel === panel);
     }
     view.requestRender();
   };
-  buttons.forEach((button) =>
-    button.addEventListener('click', (event) => {
-      // A second press by hand closes the sheet; a press by the page opens it only.
-      show(event.isTrusted && button.getAttribute('aria-pressed') === 'true' ? null : button);
-    }),
-  );
-  show(buttons[0]);
+  for (const button of buttons)
+    button.addEventListener('click', () =>
+      open(button.getAttribute('aria-pressed') === 'true' ? null : button.dataset.panel),
+    );
+  open('answers');
+  return { open };
 }

@@ -1,6 +1,7 @@
 // The drawing surface: a renderer that draws only when something changed, two cameras and their controls.
 import {
   Box3,
+  Color,
   ColorManagement,
   LinearSRGBColorSpace,
   MOUSE,
@@ -92,6 +93,10 @@ export function createView(canvas, bounds, shared, isLarge) {
       requestAnimationFrame(draw);
     },
     renderNow: draw,
+    setBackground(color) {
+      renderer.setClearColor(new Color(color));
+      view.requestRender();
+    },
     beforeRender: (prepare) => preparers.push(prepare),
     onRender: (watch) => watchers.push(watch),
     resize() {
