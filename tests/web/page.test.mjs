@@ -266,6 +266,32 @@ test('marks are saved as CSV that spawnfield reads', async () => {
   await page.click('#tab-spawns');
 });
 
+test('light and dark are switched, on the map, too', async () => {
+  const corner = () => page.evaluate(() => window.spawnfield.pixelAt(3, 300));
+  await page.keyboard.press('Escape');
+  await page.locator('#canvas').focus();
+  await page.keyboard.press('i');
+  const light = await corner();
+  await page.click('#theme');
+  const dark = await corner();
+  assert.ok(light[0] > 200 && dark[0] < 40, `${light} ${dark}`);
+  await page.click('#theme');
+});
+
+test('on a phone, the sheet with the colours stays while the heading is moved', async () => {
+  const phone = await browser.open(pageWith(smallPack()), { width: 390, height: 844, touch: true });
+  const { x, y } = await phone.evaluate((where) => window.spawnfield.project(where), at(-1, 4, 0));
+  const box = await phone.locator('#canvas').boundingBox();
+  await phone.touchscreen.tap(box.x + x, box.y + y);
+  await until(phone, () => window.spawnfield.answer() !== null);
+  await phone.click('#sheet-tabs [data-panel=settings]');
+  await phone.fill('#heading', '1');
+  assert.ok(await phone.locator('#heading').isVisible());
+  assert.equal(await phone.evaluate(() => window.spawnfield.answer().pose[5]), Math.PI / 2);
+  assert.deepEqual(phone.faults, []);
+  await phone.done();
+});
+
 test('nothing of all this wrote an error', () => assert.deepEqual(page.faults, []));
 
 test('hostile names remain text', async () => {

@@ -68,6 +68,6 @@ function showFailure(error) {
   const message = [element('h2', { text: 'This review cannot be shown' }), element('p', { text })];
   const failure = element('div', { class: 'failure', role: 'alert', id: 'failure' }, ...message);
   document.querySelector('main').replaceWith(failure);
-  byId('sheet-tabs').hidden = true;
+  byId('sheet-tabs').hidden = document.querySelector('.tools').hidden = true;
   byId('hint').textContent = '';
 }

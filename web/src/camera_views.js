@@ -3,7 +3,33 @@ import { Spherical, Vector3 } from 'three';
 
 const ISOMETRIC = new Vector3(-1, -1, Math.SQRT2 * Math.tan(Math.PI / 5.1)).normalize();
 const FLIGHT_MILLISECONDS = 450;
+const FILLED = 0.93; // share of the view that the world fills
 const HALF_FIELD = Math.tan((45 * Math.PI) / 360);
+
+/** Returns the target and the position of a camera that sees all of the world's box as large as possible. */
+function fitted(view, direction, firstDistance) {
+  const camera = view.camera.clone();
+  const target = view.center.clone();
+  let distance = firstDistance;
+  const { min, max } = view.box;
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
+    (corner) => new Vector3(corner & 1 ? max.x : min.x, corner & 2 ? max.y : min.y, corner & 4 ? max.z : min.z),
+  );
+  for (let step = 0; step < 8; ++step) {
+    camera.position.copy(target).addScaledVector(direction, distance);
+    camera.lookAt(target);
+    camera.updateMatrixWorld();
+    const seen = corners.map((corner) => corner.clone().project(camera));
+    const [left, right] = [Math.min(...seen.map(({ x }) => x)), Math.max(...seen.map(({ x }) => x))];
+    const [low, high] = [Math.min(...seen.map(({ y }) => y)), Math.max(...seen.map(({ y }) => y))];
+    const side = new Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
+    const up = new Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
+    target.addScaledVector(side, ((left + right) / 2) * distance * HALF_FIELD * camera.aspect);
+    target.addScaledVector(up, ((low + high) / 2) * distance * HALF_FIELD);
+    distance *= Math.min(Math.max(right - left, high - low) / 2 / FILLED, 1.5);
+  }
+  return { target, position: target.clone().addScaledVector(direction, distance) };
+}
 
 /** Returns the flights of a view. Places are relative to the origin. */
 export function createCameraViews(view) {
@@ -68,12 +94,20 @@ export function createCameraViews(view) {
       end = null;
     },
     isFlying: () => end !== null,
-    top(place = view.center.toArray(), radius = view.radius * 0.8) {
-      flyTop(place, radius);
+    /** Shows the whole world from above. */
+    top() {
+      const size = view.box.getSize(new Vector3());
+      const aspect = view.canvas.clientWidth / Math.max(view.canvas.clientHeight, 1);
+      flyTop(
+        view.center.toArray(),
+        0.52 * Math.max(size.y * Math.min(1, aspect), size.x * Math.min(1, 1 / aspect), 0.6),
+      );
     },
-    isometric(place = view.center.toArray(), radius = view.radius) {
+    /** Shows the whole world from the south-west. */
+    isometric() {
       view.setTop(false);
-      flyTo(place, radius * 0.93, ISOMETRIC);
+      const { target, position } = fitted(view, ISOMETRIC, distanceFor(view.radius));
+      moveTo(target, position);
     },
     /** Moves the target by shares of the view: to the right and ahead. */
     pan(right, ahead) {

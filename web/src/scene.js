@@ -80,6 +80,7 @@ export function createView(canvas, bounds, shared, isLarge) {
     controls,
     uploads,
     center,
+    box,
     radius,
     get camera() {
       return camera;
