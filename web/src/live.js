@@ -239,7 +239,7 @@ export function createLive(live, firstCommand, actions) {
         element(
           'tr',
           {},
-          ...['#', 'What changed, and counts', 'Time', ''].map((text) => element('th', { scope: 'col', text })),
+          ...['#', 'What changed, and counts', 'Time', 'Again'].map((text) => element('th', { scope: 'col', text })),
         ),
       ),
       runRows,

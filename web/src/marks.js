@@ -44,7 +44,7 @@ export function createMarks(actions) {
     element(
       'thead',
       {},
-      element('tr', {}, ...['Mark', 'Name and note', ''].map((text) => element('th', { scope: 'col', text }))),
+      element('tr', {}, ...['Mark', 'Name and note', 'Actions'].map((text) => element('th', { scope: 'col', text }))),
     ),
     rows,
   );
