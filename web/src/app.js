@@ -23,12 +23,12 @@ async function openPage(scriptText) {
   const { json } = pack;
   if (json.verdicts.length > MOST_VERDICTS)
     throw new PackError(`The data has ${json.verdicts.length} verdicts; the page shows at most ${MOST_VERDICTS}.`);
-  needWebGl2();
+  const graphics = needWebGl2();
   const title = visibleText(json.title ?? 'spawnfield review');
   document.title = `${title} – spawnfield`;
   byId('title').textContent = title;
 
-  const map = createMap(pack, byId('canvas'), scriptText);
+  const map = createMap(pack, byId('canvas'), scriptText, graphics);
   const page = createReview(pack, map);
   const decodeMilliseconds = performance.now();
   map.view.renderNow();
@@ -49,6 +49,7 @@ function packBytes() {
   return bytes;
 }
 
+// Returns {isSoftware}: whether the processor draws, because the browser has no graphics hardware.
 function needWebGl2() {
   const gl = document.createElement('canvas').getContext('webgl2');
   if (!gl)
@@ -56,7 +57,12 @@ function needWebGl2() {
       'This browser has no WebGL 2. Allow graphics (WebGL) in its settings, or open the page in a current Firefox or ' +
         'Chromium.',
     );
+  // Firefox gives the name at once; other browsers have an extension for it.
+  const generic = String(gl.getParameter(gl.RENDERER));
+  const info = /^webkit/i.test(generic) ? gl.getExtension('WEBGL_debug_renderer_info') : null;
+  const name = info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : generic;
   gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return { isSoftware: /swiftshader|llvmpipe|software/i.test(name) };
 }
 
 function showFailure(error) {

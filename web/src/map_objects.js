@@ -11,15 +11,19 @@ import { sharedUniforms } from './shaders.js';
 
 export const UNCUT = 1e30;
 const MANY_THINGS = 600000; // triangles and poses
+const MANY_IN_SOFTWARE = 50000;
 const PAIR_COLOR = '#d81b60';
 
-/** Returns the map of a pack on a canvas. `scriptText` is that of the page, for the worker. */
-export function createMap(pack, canvas, scriptText) {
+/**
+ * Returns the map of a pack on a canvas. `scriptText` is that of the page, for the worker. `isSoftware`: the processor
+ * draws.
+ */
+export function createMap(pack, canvas, scriptText, { isSoftware }) {
   const { json } = pack;
   const { origin } = json;
   const shared = sharedUniforms(json.verdicts);
   const bounds = worldBounds(json);
-  const view = createView(canvas, bounds, shared, drawnThings(json) > MANY_THINGS);
+  const view = createView(canvas, bounds, shared, drawnThings(json) > (isSoftware ? MANY_IN_SOFTWARE : MANY_THINGS));
   const world = createWorld(pack, shared, [bounds.min[2], bounds.max[2]]);
   const verdictLayer = createVerdictLayer(shared, origin);
   view.scene.add(world.group, verdictLayer.object);
