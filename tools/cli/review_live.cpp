@@ -29,7 +29,8 @@ enum class For { All, Layers, Spawns };
 struct Control {
     const char *option, *name, *type, *group, *unit = "";
     For use = For::All;
-    const char* value = "";  ///< the program's default, if its option has one
+    const char* value = "";   ///< at first: the program's default, if its option has one
+    bool has_default = true;  ///< whether `value` is that default
 };
 
 const std::vector<Control> controls{
@@ -51,7 +52,7 @@ const std::vector<Control> controls{
     {"--raster", "Distance between columns", "number", "Verdicts", "m", For::Layers},
     {"--yaw", "Yaw", "text", "Verdicts", "", For::Layers, "0"},
     {"--headings", "Headings all around", "integer", "Verdicts", "", For::Layers, "1"},
-    {"-n", "Number of spawns", "integer", "Spawns", "", For::Spawns, "20"},
+    {"-n", "Number of spawns", "integer", "Spawns", "", For::Spawns, "20", false},
     {"--min-distance", "Distance between spawns", "number", "Spawns", "m", For::Spawns, "0"},
     {"--clearance", "Distance from obstacles", "number", "Spawns", "m", For::Spawns, "0"},
     {"--seed", "Seed", "integer", "Spawns", "", For::Spawns, "0"},
@@ -181,7 +182,7 @@ private:
             if (option == "--robot" || (control->use != For::All && control->use != use)) continue;
             for (const Json& one : value.is_array() ? value : Json::array({value})) {
                 const std::string text = one.is_string() ? one.get<std::string>() : one.is_null() ? "" : text_of(one);
-                if (text.empty()) continue;
+                if (text.empty() || (control->has_default && text == control->value)) continue;
                 if (std::string_view(control->type) == "regions" && text.front() != '{' &&
                     text.find_first_not_of("0123456789+-.eE, ") != text.npos)
                     throw Refused{option + " of a page needs a box or GeoJSON, not the name of a file"};

@@ -101,7 +101,7 @@ export function createAnswerPanel(actions) {
       program.replaceChildren(
         element('h3', { text: 'The program says' }),
         element('p', {
-          text: `${String(answer.verdict ?? '').replace(/_/g, ' ')}${answer.reason ? `: ${answer.reason}` : ''}`,
+          text: answer.reason || String(answer.verdict ?? '').replace(/_/g, ' '),
         }),
         element(
           'details',

@@ -259,7 +259,7 @@ function showFacts(page) {
     page.sheet.open('answers');
     byId('spawn-rows').querySelector('button')?.click();
   };
-  const text = `${grouped(refused)} of ${all} spawns are not valid`;
+  const text = `${grouped(refused)} of ${all} spawns ${refused === 1 ? 'is' : 'are'} not valid`;
   const button = element('button', { type: 'button', id: 'refused-fact', text, on: { click: press } });
   byId('facts').replaceChildren();
   if (refused > 0) byId('facts').append(element('li', {}, button));

@@ -92,7 +92,7 @@ export function createSpawnList(verdicts, actions) {
     count.textContent =
       refused === 0
         ? `All ${grouped(list.poses.length)} spawns are valid.`
-        : `${grouped(refused)} of ${grouped(list.poses.length)} spawns are not valid.`;
+        : `${grouped(refused)} of ${grouped(list.poses.length)} spawns ${refused === 1 ? 'is' : 'are'} not valid.`;
     const indices = sortedPoses(list, order.value, isValid, turn.getAttribute('aria-pressed') === 'true').filter(
       (index) => !onlyRefused.checked || !isValid(list.verdicts[index]),
     );
@@ -181,7 +181,7 @@ export function pairList(lists, actions) {
         text: `${list.file}: ${
           refused === 0
             ? `all ${list.pairs.length} pairs are valid`
-            : `${refused} of ${list.pairs.length} pairs are not valid`
+            : `${refused} of ${list.pairs.length} pairs ${refused === 1 ? 'is' : 'are'} not valid`
         }.`,
       }),
     );
