@@ -29,5 +29,6 @@ pkg_check_modules(httplib REQUIRED IMPORTED_TARGET cpp-httplib)
 pkg_check_modules(ccd REQUIRED IMPORTED_TARGET ccd)
 
 set(SPAWNFIELD_PRIVATE_LIBRARIES
-  octomap octomath yaml-cpp tinyxml2::tinyxml2 nlohmann_json::nlohmann_json meshoptimizer::meshoptimizer PNG::PNG TIFF::TIFF
-  ZLIB::ZLIB TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash PkgConfig::deflate Threads::Threads)
+  octomap octomath yaml-cpp tinyxml2::tinyxml2 nlohmann_json::nlohmann_json meshoptimizer::meshoptimizer PNG::PNG
+  TIFF::TIFF ZLIB::ZLIB TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash PkgConfig::deflate
+  Threads::Threads)
