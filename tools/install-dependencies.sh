@@ -11,7 +11,8 @@ packages=(
   ccache cmake g++ ninja-build pkg-config
   libassimp-dev libccd-dev libcli11-dev libcpp-httplib-dev libdeflate-dev libeigen3-dev libfcl-dev libhpdf-dev
   libmeshoptimizer-dev liboctomap-dev libopencv-core-dev libopencv-imgproc-dev libpng-dev libproj-dev libqhull-dev
-  libsdformat-dev libtbb-dev libtiff-dev libtinyxml2-dev liburdfdom-dev libxxhash-dev libyaml-cpp-dev nlohmann-json3-dev zlib1g-dev
+  libsdformat-dev libtbb-dev libtiff-dev libtinyxml2-dev liburdfdom-dev libxxhash-dev libyaml-cpp-dev
+  nlohmann-json3-dev zlib1g-dev
   python3-dev python3-venv
 )
 # Node.js of another source than Debian serves, too.
