@@ -116,10 +116,53 @@ std::uint32_t cell_of(const RasterGrid& grid, const RasterPose& pose)
     return std::uint32_t(row * grid.cols + col);
 }
 
+/// Adds a pose with what its raster says.
+void add_from_raster(LayerColumns& out, const RasterResult& raster, const HeightScale& heights, std::size_t pose)
+{
+    const RasterPose& at = raster.poses[pose];
+    out.poses.push_back(pose);
+    out.cell.push_back(cell_of(raster.grid, at));
+    out.z.push_back(heights.above(at.z));
+    out.verdict.push_back(std::uint8_t(at.verdict));
+    ++out.counts[at.verdict];
+    out.hit.push_back(0);
+    out.ground.push_back(
+        heights.nearest(raster.rests.empty() ? at.z - raster.offset : raster.rests[pose].layer_height));
+    if (raster.rests.empty()) return;
+    const RasterRest& rest = raster.rests[pose];
+    out.roll.push_back(rounded_angle(rest.roll));
+    out.pitch.push_back(rounded_angle(rest.pitch));
+    out.tilt.push_back(rest.tilt);
+    out.margin.push_back(rest.margin);
+}
+
+/// Adds a pose that was judged again.
+void add_judged(LayerColumns& out, const Judge& judge, const RasterResult& raster, const HeightScale& heights,
+                std::size_t pose, const JudgedPlace& place)
+{
+    constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+    const Judgement& judgement = place.judgement;
+    out.poses.push_back(pose);
+    out.cell.push_back(cell_of(raster.grid, raster.poses[pose]));
+    out.z.push_back(heights.above(raster.poses[pose].z));
+    out.verdict.push_back(std::uint8_t(judgement.verdict));
+    ++out.counts[judgement.verdict];
+    out.hit.push_back(hit_number(judgement.hit, judge.map()));
+    out.ground.push_back(judgement.ground ? heights.nearest(judgement.ground->height) : no_ground);
+    out.reasons.add(place.reason);
+    if (raster.stance != Stance::Settled) return;
+    const SettledPose& rest = place.settled;
+    out.roll.push_back(rest.has_pose ? rounded_angle(rest.roll) : std::int16_t(0));
+    out.pitch.push_back(rest.has_pose ? rounded_angle(rest.pitch) : std::int16_t(0));
+    out.tilt.push_back(rest.has_pose ? rest.tilt : no_value);
+    out.margin.push_back(rest.has_pose ? rest.margin : no_value);
+}
+
+/// Returns the columns of poses that are judged as `check` does: its verdict may differ from that of the raster, which
+/// has no limit of height.
 LayerColumns judged_columns(const Judge& judge, const RasterResult& raster, const HeightScale& heights,
                             const RunOptions& options)
 {
-    constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
     const Mat3 rotation = rotation_from_rpy(0, 0, raster.yaw);
     const auto pose_of = [&](std::size_t i) {
         const RasterPose& pose = raster.poses[i];
@@ -128,22 +171,7 @@ LayerColumns judged_columns(const Judge& judge, const RasterResult& raster, cons
     LayerColumns out;
     judge_places(judge, raster.stance, raster.poses.size(), pose_of, options,
                  [&](std::size_t pose, const JudgedPlace& place) {
-                     if (is_on_higher_layer(raster, pose, place)) return;
-                     const Judgement& judgement = place.judgement;
-                     out.poses.push_back(pose);
-                     out.cell.push_back(cell_of(raster.grid, raster.poses[pose]));
-                     out.z.push_back(heights.above(raster.poses[pose].z));
-                     out.verdict.push_back(std::uint8_t(judgement.verdict));
-                     ++out.counts[judgement.verdict];
-                     out.hit.push_back(hit_number(judgement.hit, judge.map()));
-                     out.ground.push_back(judgement.ground ? heights.nearest(judgement.ground->height) : no_ground);
-                     out.reasons.add(place.reason);
-                     if (raster.stance != Stance::Settled) return;
-                     const SettledPose& rest = place.settled;
-                     out.roll.push_back(rest.has_pose ? rounded_angle(rest.roll) : std::int16_t(0));
-                     out.pitch.push_back(rest.has_pose ? rounded_angle(rest.pitch) : std::int16_t(0));
-                     out.tilt.push_back(rest.has_pose ? rest.tilt : no_value);
-                     out.margin.push_back(rest.has_pose ? rest.margin : no_value);
+                     if (!is_on_higher_layer(raster, pose, place)) add_judged(out, judge, raster, heights, pose, place);
                  });
     return out;
 }
@@ -154,27 +182,13 @@ LayerColumns raster_columns(const RasterResult& raster, const HeightScale& heigh
     LayerColumns out;
     std::size_t column = 0;  // first pose of the pose's column
     for (std::size_t pose = 0; pose < raster.poses.size(); ++pose) {
-        const RasterPose& at = raster.poses[pose];
-        const std::uint32_t cell = cell_of(raster.grid, at);
-        if (out.cell.empty() || cell != out.cell.back()) column = pose;
+        const RasterPose &at = raster.poses[pose], &first = raster.poses[column];
+        if (at.x != first.x || at.y != first.y) column = pose;
         // On a higher layer: see is_on_higher_layer().
-        const auto is_same = [&](const RasterPose& other) { return other.z == at.z; };
-        if (std::any_of(raster.poses.begin() + std::ptrdiff_t(column), raster.poses.begin() + std::ptrdiff_t(pose),
-                        is_same))
-            continue;
-        out.poses.push_back(pose);
-        out.cell.push_back(cell);
-        out.z.push_back(heights.above(at.z));
-        out.verdict.push_back(std::uint8_t(at.verdict));
-        ++out.counts[at.verdict];
-        out.ground.push_back(
-            heights.nearest(raster.rests.empty() ? at.z - raster.offset : raster.rests[pose].layer_height));
-        if (raster.rests.empty()) continue;
-        const RasterRest& rest = raster.rests[pose];
-        out.roll.push_back(rounded_angle(rest.roll));
-        out.pitch.push_back(rounded_angle(rest.pitch));
-        out.tilt.push_back(rest.tilt);
-        out.margin.push_back(rest.margin);
+        const auto begin = raster.poses.begin() + std::ptrdiff_t(column),
+                   end = raster.poses.begin() + std::ptrdiff_t(pose);
+        if (std::any_of(begin, end, [&](const RasterPose& other) { return other.z == at.z; })) continue;
+        add_from_raster(out, raster, heights, pose);
     }
     return out;
 }
