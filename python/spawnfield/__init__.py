@@ -16,7 +16,7 @@ from .batches import Batch, batch
 from .errors import ArgumentError, FileError, NothingFits, NotValid, SpawnfieldError
 from .options import options
 from .pool import Draw, Pool
-from .results import VALID, VERDICTS, Fleet, Pairs, Picture, Raster, Spawns, Table, Verdicts
+from .results import VALID, VERDICTS, Fleet, Page, Pairs, Picture, Raster, Spawns, Table, Verdicts
 from .robot import Robot
 from .scene import Scene
 from .world import World, bake, info, open
@@ -24,6 +24,6 @@ from .world import World, bake, info, open
 __version__ = _version()
 __all__ = [
     "VALID", "VERDICTS", "ArgumentError", "Audit", "Batch", "Draw", "FileError", "Fleet", "NotValid", "NothingFits",
-    "Pairs", "Picture", "Pool", "Raster", "Robot", "Scene", "SpawnfieldError", "Spawns", "Table", "Verdicts", "World",
+    "Page", "Pairs", "Picture", "Pool", "Raster", "Robot", "Scene", "SpawnfieldError", "Spawns", "Table", "Verdicts", "World",
     "audit", "bake", "batch", "info", "open", "options", "spawn_ok",
 ]  # fmt: skip

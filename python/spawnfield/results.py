@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Mapping
+from html import escape
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -357,6 +358,31 @@ class Raster(Table):
         """Returns the CSV file that ``spawnfield raster`` writes, and writes it to `file` if that is given.
         `write_aerial`: also rows of ``aerial`` poses of 3D rasters."""
         return write_bytes(self._found.csv(write_aerial, self._threads), file)
+
+
+class Page:
+    """The review page of a world (docs/review.md). A notebook shows it if it is the last value of a cell.
+
+    Attributes:
+        html: the text of the file.
+        summary: the summary of the query, as of ``--summary``.
+    """
+
+    def __init__(self, html: str, summary: Mapping[str, Any]) -> None:
+        self.html = html
+        self.summary = dict(summary)
+
+    def __repr__(self) -> str:
+        return f"Page({len(self.html)} bytes)"
+
+    def _repr_html_(self) -> str:
+        # A frame of its own: neither the page nor the notebook changes the other.
+        return (f'<iframe title="spawnfield review" style="width: 100%; height: 640px; border: 0" '
+                f'srcdoc="{escape(self.html)}"></iframe>')  # fmt: skip
+
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Writes the file, completely or not at all. Raises OSError."""
+        write_bytes(self.html.encode(), file)
 
 
 class Picture:

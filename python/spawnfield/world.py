@@ -13,7 +13,7 @@ import numpy as np
 
 from . import _core, commands
 from .errors import ArgumentError, NotValid, translated
-from .results import Fleet, Pairs, Picture, Raster, Spawns, Verdicts
+from .results import Fleet, Page, Pairs, Picture, Raster, Spawns, Verdicts
 from .robot import Robot
 from .scene import Scene, _host_array, scene_of
 
@@ -261,6 +261,33 @@ class World:
         if out is not None:
             picture.save(out)
         return picture
+
+    def review(
+        self, robot: Robot | File, *, out: File | None = None, progress: bool | None = None, **options: Any
+    ) -> Page:
+        """Returns a page that shows the world in 3D, and tells for any place why the robot cannot stand there, as
+        ``spawnfield review``.
+
+        Args:
+            robot: the robot.
+            out: HTML file to write, too.
+            progress: True: show progress with tqdm; None: only on a terminal, if tqdm is installed.
+            **options: for example ``raster=0.1, spawns=spawns``, which may be `Spawns`, an array of poses as for
+                `check`, or a file.
+
+        Returns:
+            The page. A notebook shows it in its cell.
+        """
+        if options.get("serve"):
+            raise ArgumentError("--serve is only for the program: a page that Python makes cannot be changed")
+        inputs: dict[str, Any] = {}
+        if options.get("spawns") is not None:
+            options["spawns"] = poses_word(options["spawns"], inputs, has_text=True)
+        outcome = self._run("review", robot, {**options, "out": "-"}, progress, inputs, True)
+        page = Page(outcome.text, outcome.summary)
+        if out is not None:
+            page.save(out)
+        return page
 
     def export(
         self, robot: Robot | File | None = None, *, progress: bool | None = None, **options: Any

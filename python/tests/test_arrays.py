@@ -248,6 +248,22 @@ def test_arrays_outlive_results(world, robot):
     assert (pose == copy).all()
 
 
+def test_review_is_a_page_that_a_notebook_frames(world, robot, tmp_path):
+    spawns = world.sample(robot, 3, seed=1)
+    try:
+        page = world.review(robot, raster=1, spawns=spawns, out=tmp_path / "review.html")
+    except sf.SpawnfieldError as error:
+        assert "without the review page" in str(error)
+        pytest.skip(str(error))
+    assert page.html.lower().startswith("<!doctype html>")
+    assert (tmp_path / "review.html").read_text() == page.html
+    frame = page._repr_html_()
+    assert frame.startswith("<iframe") and "<!doctype" not in frame
+    assert page.summary["counts"]["valid"] > 0
+    with pytest.raises(sf.ArgumentError, match="--serve is only for the program"):
+        world.review(robot, serve=True)
+
+
 def test_picture(world, robot, tmp_path):
     picture = world.heatmap(robot, size=400)
     assert picture._repr_png_()[:8] == b"\x89PNG\r\n\x1a\n"
