@@ -43,12 +43,21 @@ class Server {
 public:
     explicit Server(const LocalServerOptions& options) : options_(options), token_(random_token())
     {
-        // The default lets other servers use the same port, whose answers the browser would get.
-        server_.set_socket_options([](socket_t) {});
+        // The default lets other servers use the same port, whose answers the browser would get. SO_REUSEADDR alone
+        // does not; without it, the port of a server that has just ended could not be used.
+        server_.set_socket_options([](socket_t socket) {
+            const int yes = 1;
+            setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+        });
         server_.set_payload_max_length(most_body);
         server_.set_read_timeout(patience);
         server_.set_write_timeout(patience);
+        server_.set_keep_alive_timeout(1);  // s; the server ends only when all connections have ended
         server_.new_task_queue = [] { return new httplib::ThreadPool(connections); };
+        server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+            return is_refused(request, response) ? httplib::Server::HandlerResponse::Handled
+                                                 : httplib::Server::HandlerResponse::Unhandled;
+        });
         const auto handle = [this](const httplib::Request& request, httplib::Response& response) {
             answer(request, response);
         };
@@ -66,8 +75,8 @@ public:
         if (port_ < 0)
             throw std::runtime_error("port " + std::to_string(options_.port) +
                                      " cannot be used; is another program using it? Another --port may be free");
+        options_.on_start("http://" + host() + "/" + token_ + "/");  // connections wait meanwhile
         std::jthread listener([this] { server_.listen_after_bind(); });
-        options_.on_start("http://" + host() + "/" + token_ + "/");
         while (!options_.stop()) std::this_thread::sleep_for(std::chrono::milliseconds(100));
         server_.stop();
     }
@@ -83,22 +92,38 @@ private:
         return request.get_header_value("Host") == host() && (origin.empty() || origin == "http://" + host());
     }
 
-    void answer(const httplib::Request& request, httplib::Response& response)
+    bool has_token(const httplib::Request& request) const
+    {
+        const std::size_t slash = request.path.find('/', 1);
+        return slash != request.path.npos && is_equal(request.path.substr(1, slash - 1), token_);
+    }
+
+    /// Refuses a request before its body is read: only lengths that are known can be limited.
+    bool is_refused(const httplib::Request& request, httplib::Response& response) const
     {
         response.set_header("Cache-Control", "no-store");
         response.set_header("Referrer-Policy", "no-referrer");
         response.set_header("X-Content-Type-Options", "nosniff");
         response.set_header("X-Frame-Options", "DENY");
-        const std::size_t slash = request.path.find('/', 1);
-        const bool has_token = slash != request.path.npos && is_equal(request.path.substr(1, slash - 1), token_);
-        if (!has_token || !is_own(request)) {
-            response.status = 403;
-            response.set_content("This address needs its token: use the whole address that spawnfield printed.\n",
-                                 "text/plain");
-            return;
-        }
+        response.set_header("Cross-Origin-Resource-Policy", "same-origin");
+        const auto refuse = [&](int status, const char* why) {
+            response.status = status;
+            response.set_header("Connection", "close");
+            response.set_content(why, "text/plain");
+            return true;
+        };
+        if (!has_token(request) || !is_own(request))
+            return refuse(403, "This address needs its token: use the whole address that spawnfield printed.\n");
+        if (request.has_header("Transfer-Encoding") || request.has_header("Content-Encoding"))
+            return refuse(411, "A request needs a body of known length that is not compressed.\n");
+        return false;
+    }
+
+    void answer(const httplib::Request& request, httplib::Response& response)
+    {
         const std::lock_guard one_at_a_time(mutex_);
-        const WebAnswer answer = options_.answer({request.method, request.path.substr(slash + 1), request.body});
+        const std::string path = request.path.substr(request.path.find('/', 1) + 1);
+        const WebAnswer answer = options_.answer({request.method, path, request.body});
         response.status = answer.status;
         response.set_content(answer.body, answer.type);
     }

@@ -4,6 +4,7 @@ program was built without the page.
 """
 import http.client
 import json
+import math
 import re
 import signal
 import struct
@@ -87,6 +88,11 @@ def tries_queries(page):
     headings = page.pack("layers", {"--headings": 3})
     check("each heading is a layer", len(headings["layers"]) == 3)
 
+    corners = [[round(3 * math.cos(k / 3), 15), round(3 * math.sin(k / 3), 15)] for k in range(19)]
+    polygon = json.dumps({"type": "Polygon", "coordinates": [corners + corners[:1]]})
+    inside = page.pack("spawns", {"-n": 5, "--region": polygon})
+    check("a region may have many corners", inside["spawns"][0]["verdicts"] == [valid] * 5)
+
     spawns = page.pack("spawns", {"-n": 7, "--seed": 3, "--min-distance": 1})
     again = page.pack("spawns", {"-n": 7, "--seed": 3, "--min-distance": 1})
     check("the same seed has the same spawns", spawns["spawns"] == again["spawns"])
@@ -113,8 +119,12 @@ def refuses(page):
             ("pose", {"pose": [1, 2]}, "pose needs six numbers"),
             ("pose", {"pose": [0, 0, "x", 0, 0, 0]}, "pose needs six numbers"),
             ("spawns", {"-n": 0}, "-n is 0"),
-            ("spawns", {"-n": 3, "--clearance": 100}, "")):
-        message = page.message(what, body) if words else ""
+            ("layers", {"--region": "12"}, "not the name of a file"),
+            ("layers", {"--region": "-"}, "not the name of a file"),
+            ("layers", {"--robot": 5}, "type"),
+            ("layers", {"--yaw": [[[1]]]}, "--yaw needs a text or a number"),
+            ("pose", {"pose": [0, 0, 0, 0, 0, 0], "options": 5}, "")):
+        message = page.message(what, body)
         check(f"{what} {body} says \"{words}\", said \"{message}\"", words in message)
     check("the page lives", page.ask("GET", page.path)[0] == 200)
 
@@ -133,6 +143,9 @@ def keeps_strangers_out(page):
         check(f"{name} gets {status}", status == 403 and b"spawnfield-data" not in answer)
     own = page.ask("POST", page.path + "layers", '{"--raster": 2}', Origin=f"http://{host}")
     check("the page's own origin is served", own[0] == 200)
+    for name, headers in (("chunks", {"Transfer-Encoding": "chunked"}), ("gzip", {"Content-Encoding": "gzip"})):
+        check(f"a body in {name} is refused", page.ask("POST", page.path + "layers", b"", **headers)[0] == 411)
+        check("and without the token", page.ask("POST", "/layers", b"", **headers)[0] == 403)
     check("a body of 2 MB is refused", page.ask("POST", page.path + "layers", b"x" * (2 << 20))[0] == 413)
     check("other methods are refused", page.ask("PUT", page.path, "x")[0] in (400, 404))
     check("other paths are refused", page.ask("GET", page.path + "../etc/passwd")[0] in (403, 404))

@@ -436,28 +436,12 @@ export function smallPack({ names, partName, live } = {}) {
     world,
     robot: robot(pack),
     floors: [
-      { name: 'floor 1', z: [ORIGIN[2] - 0.5, ORIGIN[2] + 0.2] },
-      { name: 'floor 2', z: [ORIGIN[2] + 2.9, ORIGIN[2] + 3.1] },
+      { name: 'floor 1', height: ORIGIN[2], z: [null, ORIGIN[2] + 1.5] },
+      { name: 'floor 2', height: ORIGIN[2] + 3, z: [ORIGIN[2] + 1.5, null] },
     ],
     islands: [
-      {
-        number: 1,
-        area: 268.4,
-        center: [ORIGIN[0], ORIGIN[1], ORIGIN[2]],
-        bounds: {
-          min: [ORIGIN[0] - 10, ORIGIN[1] - 10, ORIGIN[2]],
-          max: [ORIGIN[0] + 10, ORIGIN[1] + 10, ORIGIN[2] + 1],
-        },
-      },
-      {
-        number: 2,
-        area: 7.6,
-        center: [ORIGIN[0] - 5, ORIGIN[1] - 2, ORIGIN[2] + 3],
-        bounds: {
-          min: [ORIGIN[0] - 8, ORIGIN[1] - 3, ORIGIN[2] + 3],
-          max: [ORIGIN[0] - 2, ORIGIN[1] - 1, ORIGIN[2] + 3],
-        },
-      },
+      { number: 1, area: 268.4, center: [ORIGIN[0], ORIGIN[1], ORIGIN[2]], z: [ORIGIN[2], ORIGIN[2] + 1] },
+      { number: 2, area: 7.6, center: [ORIGIN[0] - 5, ORIGIN[1] - 2, ORIGIN[2] + 3], z: [ORIGIN[2] + 3, ORIGIN[2] + 3] },
     ],
     layers: [smallLayer(pack, false), smallLayer(pack, true)],
     spawns: [spawns(pack, names)],

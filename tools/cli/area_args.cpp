@@ -12,11 +12,6 @@
 namespace spawnfield::cli {
 namespace {
 
-bool is_box(const std::string& text)
-{
-    return text.find(',') != std::string::npos && text.find_first_not_of("0123456789+-.eE, ") == std::string::npos;
-}
-
 Region read_one(const CommonArgs& common, const std::string& option, const std::string& text, MapCells cells)
 {
     if (is_box(text) && !std::filesystem::exists(text)) {
@@ -48,6 +43,11 @@ void notice_about(const CommonArgs& common, const Map& map, const std::string& o
 
 }  // namespace
 
+bool is_box(const std::string& text)
+{
+    return text.find(',') != std::string::npos && text.find_first_not_of("0123456789+-.eE, ") == std::string::npos;
+}
+
 void add_area(CLI::App& command, AreaArgs& args)
 {
     start_group(command, help_group::region);
@@ -68,7 +68,7 @@ void add_area(CLI::App& command, AreaArgs& args)
 
 std::optional<Bounds> lone_box(const AreaArgs& args)
 {
-    if (args.regions.size() != 1 || std::filesystem::exists(args.regions[0]) || !is_box(args.regions[0]))
+    if (args.regions.size() != 1 || !is_box(args.regions[0]) || std::filesystem::exists(args.regions[0]))
         return std::nullopt;
     return parse_bounds("--region", args.regions[0], true);
 }

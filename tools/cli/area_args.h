@@ -17,6 +17,9 @@ struct AreaArgs {
 };
 void add_area(CLI::App& command, AreaArgs& args);
 
+/// Returns whether a region is given as numbers with commas between them.
+bool is_box(const std::string& text);
+
 /// Returns the box of --region if it was given once, with a box; otherwise nothing. Throws ArgumentError.
 std::optional<Bounds> lone_box(const AreaArgs& args);
 

@@ -74,8 +74,9 @@ void read_lists(const ReviewArgs& args, ReviewContents& contents)
 {
     for (const std::string& file : args.spawns) contents.spawns.push_back({input_name(file), open_poses(args, file)});
     for (const std::string& file : args.pairs) {
-        ReviewPairs& pairs = contents.pairs.emplace_back(input_name(file), open_pairs(args, file));
+        ReviewPairs pairs{input_name(file), open_pairs(args, file)};
         pairs.options.spawns.threads = args.threads;
+        contents.pairs.push_back(std::move(pairs));
     }
 }
 

@@ -1,5 +1,6 @@
 #include "review_live.h"
 
+#include "area_args.h"
 #include "command.h"
 #include "host.h"
 #include "messages.h"
@@ -140,6 +141,8 @@ public:
             if (request.path == "pose") return pose_of(pose(body));
         } catch (const Refused& refused) {
             return {400, "application/json", text_of({{"message", refused.message}})};
+        } catch (const std::exception& error) {  // for example, a value of another type
+            return {400, "application/json", text_of({{"message", error.what()}})};
         }
         return {404, "text/plain", "The page asks only for layers, spawns and pose.\n"};
     }
@@ -181,10 +184,10 @@ private:
             if (control == controls.end()) throw Refused{option + " is not a control of the page"};
             if (option == "--robot" || (control->use != For::All && control->use != use)) continue;
             for (const Json& one : value.is_array() ? value : Json::array({value})) {
+                if (one.is_structured()) throw Refused{option + " needs a text or a number"};
                 const std::string text = one.is_string() ? one.get<std::string>() : one.is_null() ? "" : text_of(one);
                 if (text.empty() || (control->has_default && text == control->value)) continue;
-                if (std::string_view(control->type) == "regions" && text.front() != '{' &&
-                    text.find_first_not_of("0123456789+-.eE, ") != text.npos)
+                if (std::string_view(control->type) == "regions" && text.front() != '{' && !is_box(text))
                     throw Refused{option + " of a page needs a box or GeoJSON, not the name of a file"};
                 out.insert(out.end(), {option, text});
             }

@@ -4,12 +4,12 @@ import { rounded } from './numbers.js';
 
 /**
  * Returns the height at which the world is cut to show a floor: a robot's height above its ground, but below the next
- * floor.
+ * floor. The limits of the lowest and the highest floor are null.
  */
 export function cutAbove(floors, index, robotHeight) {
-  const cut = floors[index].z[1] + Math.max(1.3 * robotHeight, 0.5);
+  const cut = floors[index].height + Math.max(1.3 * robotHeight, 0.5);
   const next = floors[index + 1];
-  return next ? Math.min(cut, Math.max((floors[index].z[1] + next.z[0]) / 2, next.z[0] - 0.3)) : cut;
+  return next ? Math.min(cut, Math.max((floors[index].height + next.height) / 2, next.height - 0.3)) : cut;
 }
 
 /**

@@ -73,6 +73,7 @@ export function createLive(live, firstCommand, actions) {
   const runs = [];
   let lastOptions = optionsNow();
   let hasSpawns = false;
+  let hasPressed = false; // the button that samples spawns
   let timer = 0;
 
   const error = element('p', { class: 'error', role: 'alert', id: 'live-error', hidden: true });
@@ -99,6 +100,8 @@ export function createLive(live, firstCommand, actions) {
       await sendPose(request);
       return;
     }
+    const isAsked = hasPressed;
+    hasPressed = false;
     state.textContent = kind === 'layers' ? 'The program judges …' : 'The program samples …';
     const began = performance.now();
     try {
@@ -106,7 +109,7 @@ export function createLive(live, firstCommand, actions) {
       const answered = performance.now();
       const pack = await readPack(bytes);
       if (kind === 'layers') actions.showLayers(pack);
-      else actions.showSpawns(pack);
+      else actions.showSpawns(pack, isAsked);
       const decoded = performance.now();
       actions.draw();
       const done = performance.now();
@@ -128,6 +131,7 @@ export function createLive(live, firstCommand, actions) {
     }
   }
 
+  // `show` and `fail` do nothing if another answer is selected by then.
   async function sendPose({ pose, options, show, fail }) {
     try {
       show(JSON.parse(new TextDecoder().decode(await post(`${address}pose`, { options, pose }))));
@@ -222,7 +226,12 @@ export function createLive(live, firstCommand, actions) {
         class: 'main',
         id: 'live-spawns',
         text: 'Sample spawns',
-        on: { click: askSpawns },
+        on: {
+          click: () => {
+            hasPressed = true;
+            askSpawns();
+          },
+        },
       }),
       element('button', { type: 'button', text: 'Run again', on: { click: () => ask('layers', optionsNow()) } }),
     ),

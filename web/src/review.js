@@ -111,14 +111,13 @@ function floorActions(page) {
   return {
     setCut: (z) => changed(map, ({ shared }) => (shared.cut.value = z === null ? UNCUT : z - map.origin[2])),
     flyToFloor(index) {
-      const [low, high] = json.floors[index].z;
-      cameraViews.flyTo([view.center.x, view.center.y, (low + high) / 2 - map.origin[2]], view.radius * 0.8);
+      const height = json.floors[index].height - map.origin[2];
+      cameraViews.flyTo([view.center.x, view.center.y, height], view.radius * 0.8);
     },
     flyToIsland(index) {
-      const { center, bounds } = json.islands[index];
-      const size = bounds ? Math.hypot(bounds.max[0] - bounds.min[0], bounds.max[1] - bounds.min[1]) : 0;
+      const { center, area } = json.islands[index];
       page.legend.colorBy(layerNow(page)?.hasIslands ? 'island' : 'verdict');
-      cameraViews.flyTo(map.local(center), Math.max(size / 2, 1));
+      cameraViews.flyTo(map.local(center), Math.max(Math.sqrt(area), 1));
     },
   };
 }
@@ -207,7 +206,7 @@ function liveActions(page) {
       }
       showLayer(page, Math.min(page.layerIndex, page.layers.length - 1));
     },
-    showSpawns(answer) {
+    showSpawns(answer, isAsked) {
       for (const list of answer.json.spawns) {
         const before = page.spawns.findIndex(({ file }) => file === list.file);
         if (before >= 0) page.spawns[before] = list;
@@ -217,7 +216,7 @@ function liveActions(page) {
         page,
         page.spawns.findIndex(({ file }) => file === answer.json.spawns[0]?.file),
       );
-      page.tabs.open('Spawns');
+      if (isAsked) page.tabs.open('Spawns');
     },
   };
 }
@@ -285,7 +284,10 @@ function select(page, answer, spawn = null) {
   page.answerPanel.show(answer);
   byId('answers').scrollTop = 0;
   const { showProgram, showProgramError } = page.answerPanel;
-  page.live?.askPose(answer.pose, showProgram, showProgramError);
+  const ifSelected = (show) => (said) => {
+    if (page.answer === answer) show(said);
+  };
+  page.live?.askPose(answer.pose, ifSelected(showProgram), ifSelected(showProgramError));
 }
 
 export function selectSpawn(page, list, index) {
