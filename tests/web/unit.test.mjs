@@ -214,10 +214,13 @@ test('one request runs at a time, and the last one of a kind wins', async () => 
 });
 
 test('a floor is cut above its robots and below the next floor', () => {
-  const floors = [{ z: [0, 0.2] }, { z: [3, 3.1] }];
-  assert.equal(parts.cutAbove(floors, 0, 1), 1.5);
+  const floors = [
+    { height: 0, z: [null, 1.5] },
+    { height: 3, z: [1.5, null] },
+  ];
+  assert.equal(parts.cutAbove(floors, 0, 1), 1.3);
   assert.ok(parts.cutAbove(floors, 0, 5) < 3);
-  assert.ok(Math.abs(parts.cutAbove(floors, 1, 1) - 4.4) < 1e-12);
+  assert.ok(Math.abs(parts.cutAbove(floors, 1, 1) - 4.3) < 1e-12);
 });
 
 test('patterns of ten verdicts differ', () => {
