@@ -24,6 +24,7 @@ from .world import World, bake, info, open
 __version__ = _version()
 __all__ = [
     "VALID", "VERDICTS", "ArgumentError", "Audit", "Batch", "Draw", "FileError", "Fleet", "NotValid", "NothingFits",
-    "Page", "Pairs", "Picture", "Pool", "Raster", "Robot", "Scene", "SpawnfieldError", "Spawns", "Table", "Verdicts", "World",
+    "Page", "Pairs", "Picture", "Pool", "Raster", "Robot", "Scene", "SpawnfieldError", "Spawns", "Table", "Verdicts",
+    "World",
     "audit", "bake", "batch", "info", "open", "options", "spawn_ok",
 ]  # fmt: skip
