@@ -265,7 +265,7 @@ class World:
     def review(
         self, robot: Robot | File, *, out: File | None = None, progress: bool | None = None, **options: Any
     ) -> Page:
-        """Returns a page that shows the world in 3D, and tells for any place why the robot cannot stand there, as
+        """Returns a page that shows the world in 3D, and says for any place why the robot cannot stand there, as
         ``spawnfield review``.
 
         Args:

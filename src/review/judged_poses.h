@@ -8,7 +8,7 @@
 
 namespace spawnfield {
 
-/// What a page tells about a pose.
+/// What a page shows about a pose.
 struct JudgedPlace {
     Judgement judgement;
     std::string reason;        ///< empty if it is valid

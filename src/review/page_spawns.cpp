@@ -19,7 +19,7 @@ Json pose_numbers(const Vec3& position, const Rpy& rpy)
     return {position.x(), position.y(), position.z(), rpy.roll, rpy.pitch, rpy.yaw};
 }
 
-/// Returns the pose of a robot at rest, raised by the lift; nothing if it has none.
+/// Returns the pose of a robot at rest, raised by the lift; its place if it has none.
 Json rest_numbers(const SettledPose& pose, double lift)
 {
     return pose_numbers(pose.position + lift * Vec3::UnitZ(), {pose.roll, pose.pitch, pose.yaw});

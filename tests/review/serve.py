@@ -73,8 +73,8 @@ def tries_queries(page):
     check("the page is served", status == 200 and b"spawnfield-data" in html)
     coarse, fine = page.pack("layers", {"--raster": 1}), page.pack("layers", {"--raster": 0.5})
     check("a finer raster has more poses", fine["layers"][0]["count"] > 3 * coarse["layers"][0]["count"])
-    check("the command line of the layer is told", "--raster 0.5" in fine["command"])
-    check("the time is told", fine["seconds"] > 0)
+    check("the answer has the command line of the layer", "--raster 0.5" in fine["command"])
+    check("the answer has the time of the query", fine["seconds"] > 0)
     valid = 7
     flat = page.pack("layers", {"--raster": 0.5, "--max-slope": 1})
     check("a lower limit leaves fewer valid poses",

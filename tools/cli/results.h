@@ -51,7 +51,7 @@ struct FoundVerdicts {
     Judge judge;  ///< that judged them
 };
 
-/// Of `review`, for a page that is open (Host::wants_update).
+/// Of `review` if Host::wants_update is set.
 struct FoundUpdate {
     std::string pack;
 };

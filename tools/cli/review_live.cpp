@@ -93,7 +93,7 @@ Json controls_json(const CLI::App& command)
     return out;
 }
 
-/// Runs commands for a page, and takes what they say.
+/// Runs commands for a page, and keeps their messages.
 class PageHost : public Host {
 public:
     explicit PageHost(const Host& outer) : outer_(outer) { wants_update = true; }
@@ -217,26 +217,25 @@ private:
         std::vector<std::string> all(words.begin() + 1, words.end());
         all.insert(all.end(), {"--threads", std::to_string(review_.args.threads)});
         const auto start = std::chrono::steady_clock::now();
-        const auto failed = [&](const std::string& message) { return Refused{message}; };
         try {
             app.parse(std::vector<std::string>(all.rbegin(), all.rend()));
             run_command(chosen);
         } catch (const CLI::ParseError& error) {
             const std::string unknown = unknown_option(app);
-            throw failed(unknown.empty() ? error.what() : unknown);
+            throw Refused{unknown.empty() ? error.what() : unknown};
         } catch (const ArgumentError& error) {
-            throw failed(error.message());
+            throw Refused{error.message()};
         } catch (const NothingFits& nothing) {
-            throw failed(nothing.why);
+            throw Refused{nothing.why};
         } catch (const Interrupted&) {
-            throw failed("spawnfield ends");
+            throw Refused{"spawnfield ends"};
         } catch (const std::bad_alloc&) {
-            throw failed(
-                "the query needs more memory than --max-memory allows; take a larger distance between columns");
+            throw Refused{
+                "the query needs more memory than --max-memory allows; take a larger distance between columns"};
         } catch (const std::exception& error) {
-            throw failed(error.what());
+            throw Refused{error.what()};
         }
-        if (!host.result.has_value()) throw failed(host.complaint.empty() ? "nothing was found" : host.complaint);
+        if (!host.result.has_value()) throw Refused{host.complaint.empty() ? "nothing was found" : host.complaint};
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
         return {std::move(host.result), std::move(words), time.count(), std::move(host.notices)};
     }
