@@ -268,7 +268,8 @@ TEST_CASE("poses of a file and pairs have their verdicts, reasons, rests and pat
     const json& pairs = pack.head.at("pairs").at(0).at("pairs");
     CHECK(pairs.at(0).at("verdict") == "valid");
     CHECK(pairs.at(0).at("path").size() >= 2);
-    CHECK(pairs.at(1).at("verdict") == "goal_not_valid");
+    CHECK(pairs.at(1).at("pair_verdict") == "goal_not_valid");
+    CHECK(pairs.at(1).at("verdict") == to_string(settled[1].verdict));
     CHECK(pairs.at(1).at("path").empty());
     CHECK(pairs.at(1).at("reason") != "");
 }

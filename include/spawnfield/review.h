@@ -34,7 +34,7 @@ struct ReviewContents {
     std::string title = {};    ///< empty: the names of the map and the robot
     std::string command = {};  ///< the command line that makes the page
     /// 2D rasters of one stance, one for each yaw. All of their poses are judged again, as Judge::check() or settle()
-    /// does, with the heights that the page has: multiples of 1e-6 m.
+    /// does, with the heights that the page has: multiples of 1e-6 m. Not in updates.
     std::vector<RasterResult> rasters = {};
     std::vector<PlaceQuantity> quantities =
         {};                                ///< besides tilt and margin of settled poses: what is measured of poses
@@ -51,12 +51,18 @@ struct ReviewContents {
     std::size_t most_triangles = 1000000;  ///< a world with more is simplified; > 0
 };
 
+/// Limits of a page: the poses of a layer, and those of a list. Browsers cannot show more.
+inline constexpr std::size_t most_layer_poses = 16000000, most_list_poses = 100000;
+
 /// Returns whether this library was built with the page, which tools/build-web.sh makes.
 SPAWNFIELD_API bool has_review_page();
+/// Throws std::runtime_error, which says what to do, unless it was.
+SPAWNFIELD_API void require_review_page();
 
 /// Writes a page. Passes the HTML to `sink` in pieces. The result is the same for any number of threads. Throws
-/// std::runtime_error unless has_review_page(), ArgumentError for rasters with three dimensions or several headings and
-/// for contents that do not go together, FileError for a damaged map, and what options.progress throws.
+/// std::runtime_error unless has_review_page(), ArgumentError for rasters with three dimensions or several headings,
+/// for contents that do not go together and for too many poses, FileError for a damaged map, and what options.progress
+/// throws.
 SPAWNFIELD_API void write_review(const Judge& judge, const ReviewContents& contents,
                                  const std::function<void(std::string_view)>& sink, const RunOptions& options = {});
 

@@ -2,6 +2,8 @@
 
 #include "base/parallel.h"
 
+#include <algorithm>
+
 namespace spawnfield {
 namespace {
 

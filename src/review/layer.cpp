@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace spawnfield {
@@ -100,13 +101,18 @@ struct LayerColumns {
     VerdictCounts counts;
 };
 
-/// Returns whether the robot was let down onto a higher layer than that of its pose in the raster. Then this place is
-/// that of another pose.
-bool is_on_higher_layer(const RasterResult& raster, std::size_t pose, const JudgedPlace& place)
+/// Returns whether a pose of a raster, for a layer of a column, comes to rest on a higher layer (at `ground`) that has
+/// a pose of its own in the raster. Then this place is that of the other pose.
+bool is_other_place(const RasterResult& raster, std::size_t pose, double ground)
 {
     constexpr double least = 1e-6;  // m
-    return place.settled.has_pose && place.judgement.ground && pose < raster.rests.size() &&
-           place.judgement.ground->height > raster.rests[pose].layer_height + least;
+    if (raster.rests.empty() || !(ground > raster.rests[pose].layer_height + least)) return false;
+    const RasterPose& at = raster.poses[pose];
+    for (std::size_t other = pose; other-- > 0;) {  // a column's poses are listed from the top down
+        if (raster.poses[other].x != at.x || raster.poses[other].y != at.y) return false;
+        if (std::abs(raster.rests[other].layer_height - ground) <= least) return true;
+    }
+    return false;
 }
 
 std::uint32_t cell_of(const RasterGrid& grid, const RasterPose& pose)
@@ -171,7 +177,9 @@ LayerColumns judged_columns(const Judge& judge, const RasterResult& raster, cons
     LayerColumns out;
     judge_places(judge, raster.stance, raster.poses.size(), pose_of, options,
                  [&](std::size_t pose, const JudgedPlace& place) {
-                     if (!is_on_higher_layer(raster, pose, place)) add_judged(out, judge, raster, heights, pose, place);
+                     const std::optional<Ground>& ground = place.judgement.ground;
+                     if (place.settled.has_pose && ground && is_other_place(raster, pose, ground->height)) return;
+                     add_judged(out, judge, raster, heights, pose, place);
                  });
     return out;
 }
@@ -179,17 +187,19 @@ LayerColumns judged_columns(const Judge& judge, const RasterResult& raster, cons
 /// Returns the columns that a raster itself has.
 LayerColumns raster_columns(const RasterResult& raster, const HeightScale& heights)
 {
+    // The height of a settled pose that stands on a higher layer is that of the pose of that layer.
+    const auto is_same_place = [&](std::size_t pose) {
+        const RasterPose& at = raster.poses[pose];
+        for (std::size_t other = pose; other-- > 0;) {
+            const RasterPose& above = raster.poses[other];
+            if (above.x != at.x || above.y != at.y) return false;
+            if (above.z == at.z) return true;
+        }
+        return false;
+    };
     LayerColumns out;
-    std::size_t column = 0;  // first pose of the pose's column
-    for (std::size_t pose = 0; pose < raster.poses.size(); ++pose) {
-        const RasterPose &at = raster.poses[pose], &first = raster.poses[column];
-        if (at.x != first.x || at.y != first.y) column = pose;
-        // On a higher layer: see is_on_higher_layer().
-        const auto begin = raster.poses.begin() + std::ptrdiff_t(column),
-                   end = raster.poses.begin() + std::ptrdiff_t(pose);
-        if (std::any_of(begin, end, [&](const RasterPose& other) { return other.z == at.z; })) continue;
-        add_from_raster(out, raster, heights, pose);
-    }
+    for (std::size_t pose = 0; pose < raster.poses.size(); ++pose)
+        if (!is_same_place(pose)) add_from_raster(out, raster, heights, pose);
     return out;
 }
 
@@ -248,14 +258,13 @@ Json add_layer(PackWriter& pack, const Judge& judge, const RasterResult& raster,
         quantities.push_back(add_quantity(pack, "tilt", "rad", columns.tilt));
         quantities.push_back(add_quantity(pack, "margin", "m", columns.margin));
     }
-    const RunOptions quiet{.threads = options.threads};
     for (const PlaceQuantity quantity : contents.quantities) {
-        const std::vector<double> values = raster_quantity(judge, raster, quantity, contents.measures, quiet);
+        const std::vector<double> values = raster_quantity(judge, raster, quantity, contents.measures, options);
         quantities.push_back(add_quantity(pack, to_string(quantity), unit_of(quantity), chosen(values, columns.poses)));
     }
     if (contents.graph && is_settled) {
         std::vector<std::uint16_t> islands;
-        for (const std::int32_t island : chosen(islands_of(*contents.graph, judge, raster, quiet), columns.poses))
+        for (const std::int32_t island : chosen(islands_of(*contents.graph, judge, raster, options), columns.poses))
             islands.push_back(std::uint16_t(std::clamp(island + 1, 0, 65535)));
         out["island"] = delta(pack, islands);
     }

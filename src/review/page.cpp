@@ -102,7 +102,7 @@ Json floors_json(const std::vector<Floor>& floors)
     Json out = Json::array();
     for (const Floor& floor : floors) {
         const auto limit = [](double z) { return std::isfinite(z) ? Json(z) : Json(); };
-        out.push_back({{"name", "floor " + std::to_string(out.size() + 1)},
+        out.push_back({{"name", "floor " + std::to_string(out.size())},
                        {"height", floor.height},
                        {"z", {limit(floor.z.low), limit(floor.z.high)}}});
     }
@@ -114,7 +114,7 @@ Json islands_json(const ReviewContents& contents)
     Json out = Json::array();
     if (!contents.graph) return out;
     for (const Island& island : contents.graph->islands())
-        out.push_back({{"number", out.size() + 1},
+        out.push_back({{"number", out.size()},
                        {"area", island.area},
                        {"center", numbers(island.place)},
                        {"z", {island.low, island.high}}});
@@ -125,6 +125,17 @@ void check(const ReviewContents& contents)
 {
     if (!contents.pairs.empty() && !contents.graph)
         throw ArgumentError("write_review", "pairs need a graph, because paths lead between places of it");
+    for (const RasterResult& raster : contents.rasters)
+        if (raster.poses.size() > most_layer_poses)
+            throw ArgumentError("write_review", "poses of a raster", double(raster.poses.size()),
+                                "at most " + std::to_string(most_layer_poses) + "; take a larger step");
+    const auto check_list = [](const std::string& file, std::size_t poses) {
+        if (poses > most_list_poses)
+            throw FileError(file, "has " + std::to_string(poses) + " rows, a page shows at most " +
+                                      std::to_string(most_list_poses));
+    };
+    for (const ReviewSpawns& list : contents.spawns) check_list(list.file, list.table.poses.size());
+    for (const ReviewPairs& list : contents.pairs) check_list(list.file, list.table.starts.poses.size());
     if (contents.most_triangles == 0) throw ArgumentError("write_review", "most_triangles", 0, "at least 1");
 }
 
@@ -169,9 +180,9 @@ std::string review_pack(const Judge& judge, const ReviewContents& contents, cons
             };
         layers.push_back(add_layer(pack, judge, contents.rasters[i], contents, part));
     }
-    const RunOptions quiet{.threads = options.threads};
-    for (const ReviewSpawns& list : contents.spawns) spawns.push_back(spawns_for_page(judge, list, contents, quiet));
-    for (const ReviewPairs& list : contents.pairs) pairs.push_back(pairs_for_page(judge, *contents.graph, list, quiet));
+    for (const ReviewSpawns& list : contents.spawns) spawns.push_back(spawns_for_page(judge, list, contents, options));
+    for (const ReviewPairs& list : contents.pairs)
+        pairs.push_back(pairs_for_page(judge, *contents.graph, list, options));
     head["layers"] = std::move(layers);
     head["spawns"] = std::move(spawns);
     head["pairs"] = std::move(pairs);
@@ -180,13 +191,18 @@ std::string review_pack(const Judge& judge, const ReviewContents& contents, cons
 
 bool has_review_page() { return !page_shell().empty(); }
 
+void require_review_page()
+{
+    if (!has_review_page())
+        throw std::runtime_error(
+            "this program was built without the review page; run tools/build-web.sh, and build it again");
+}
+
 void write_review(const Judge& judge, const ReviewContents& contents, const std::function<void(std::string_view)>& sink,
                   const RunOptions& options)
 {
+    require_review_page();
     const std::string_view shell = page_shell();
-    if (shell.empty())
-        throw std::runtime_error(
-            "this program was built without the review page; run tools/build-web.sh, and build it again");
     const std::size_t place = shell.find(data_line);
     if (place == shell.npos) throw std::logic_error("the review page has no place for its data");
     const std::string pack = review_pack(judge, contents, options);

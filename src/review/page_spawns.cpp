@@ -33,6 +33,17 @@ Json contacts_of(const SettledPose& pose)
     return out;
 }
 
+/// Returns the verdict whose colour a pair has: that of its end that is not valid, or whether there is a way.
+Verdict verdict_of(const JudgedPair& pair)
+{
+    switch (pair.verdict) {
+    case PairVerdict::StartNotValid: return pair.start.verdict;
+    case PairVerdict::GoalNotValid: return pair.goal.verdict;
+    case PairVerdict::Valid: return Verdict::Valid;
+    default: return Verdict::Unreachable;
+    }
+}
+
 }  // namespace
 
 Json spawns_for_page(const Judge& judge, const ReviewSpawns& spawns, const ReviewContents& contents,
@@ -78,6 +89,7 @@ Json pairs_for_page(const Judge& judge, const ReachGraph& graph, const ReviewPai
 {
     PairOptions judged_by = pairs.options;
     judged_by.spawns.threads = options.threads;
+    judged_by.spawns.progress = options.progress;
     const std::vector<JudgedPair> judged = judge_pairs(judge, graph, pairs.table.starts.poses, pairs.table.goals.poses,
                                                        judged_by);
     const PairReport report{pairs.table, judged, judge, judged_by};
@@ -95,7 +107,8 @@ Json pairs_for_page(const Judge& judge, const ReachGraph& graph, const ReviewPai
         list.push_back({{"name", names[i]},
                         {"start", rest_numbers(pair.start, lift)},
                         {"goal", rest_numbers(pair.goal, lift)},
-                        {"verdict", to_string(pair.verdict)},
+                        {"verdict", to_string(verdict_of(pair))},
+                        {"pair_verdict", to_string(pair.verdict)},
                         {"reason", is_valid ? "" : reason(report, i)},
                         {"path", path}});
     }

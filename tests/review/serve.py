@@ -105,6 +105,26 @@ def tries_queries(page):
           pose["reason"] == "off_terrain: the ground is large_ball")
 
 
+def keeps_the_command_line(folder):
+    """Queries of the page have the options of the command line, and a region of the page replaces that of it."""
+    page = Page(folder, "--bounds", "-4,-4,4,4", "--region", "-2,-2,2,2", "--without", "large_ball", "--max-slope",
+                "20")
+    try:
+        whole = page.pack("layers", {"--raster": 0.5})
+        check("the region of the command line holds", whole["layers"][0]["count"] == 81)
+        check("the command has all options", all(words in whole["command"] for words in (
+            "--bounds=-4,-4,4,4", "--region=-2,-2,2,2", "--without large_ball")) or
+            all(words in whole["command"] for words in ("--bounds -4,-4,4,4", "--region -2,-2,2,2",
+                                                        "--without large_ball")))
+        other = page.pack("layers", {"--raster": 0.5, "--region": "0,0,8,1"})
+        check("a region of the page replaces it", other["layers"][0]["count"] == 27)
+        check("and bounds remain", "--region 0,0,8,1" in other["command"])
+        html = page.ask("GET", page.path)[1]
+        check("the first page is served", b"spawnfield-data" in html)
+    finally:
+        page.end()
+
+
 def refuses(page):
     for what, body, words in (
             ("layers", {"--raster": -1}, "--raster is -1, needs > 0"),
@@ -183,6 +203,7 @@ def main():
                                      str(page.port)], cwd=folder, capture_output=True, text=True, check=False)
             check("a port in use is named", second.returncode == 1 and f"port {page.port} cannot be used" in
                   second.stderr)
+            keeps_the_command_line(folder)
             files = {path.name for path in Path(folder).iterdir()}
             check(f"no file is left: {files}", files == {"map", "page.html"})
             start = time.monotonic()

@@ -52,9 +52,11 @@ export async function startBrowser() {
 export async function clickAt(page, place) {
   const at = await page.evaluate((where) => window.spawnfield.project(where), place);
   const box = await page.locator('#canvas').boundingBox();
-  await page.evaluate(() => window.spawnfield.select(0, 0));
+  await page.evaluate(() => {
+    window.answerBefore = window.spawnfield.answer();
+  });
   await page.mouse.click(box.x + at.x, box.y + at.y);
-  await until(page, () => window.spawnfield.answer()?.name !== 'gate');
+  await until(page, () => window.spawnfield.answer() !== window.answerBefore);
   return page.evaluate(() => window.spawnfield.answer());
 }
 

@@ -440,8 +440,8 @@ export function smallPack({ names, partName, live } = {}) {
       { name: 'floor 2', height: ORIGIN[2] + 3, z: [ORIGIN[2] + 1.5, null] },
     ],
     islands: [
-      { number: 1, area: 268.4, center: [ORIGIN[0], ORIGIN[1], ORIGIN[2]], z: [ORIGIN[2], ORIGIN[2] + 1] },
-      { number: 2, area: 7.6, center: [ORIGIN[0] - 5, ORIGIN[1] - 2, ORIGIN[2] + 3], z: [ORIGIN[2] + 3, ORIGIN[2] + 3] },
+      { number: 0, area: 268.4, center: [ORIGIN[0], ORIGIN[1], ORIGIN[2]], z: [ORIGIN[2], ORIGIN[2] + 1] },
+      { number: 1, area: 7.6, center: [ORIGIN[0] - 5, ORIGIN[1] - 2, ORIGIN[2] + 3], z: [ORIGIN[2] + 3, ORIGIN[2] + 3] },
     ],
     layers: [smallLayer(pack, false), smallLayer(pack, true)],
     spawns: [spawns(pack, names)],

@@ -113,7 +113,7 @@ double default_step(const Map& map, const RasterOptions& options, int columns)
 }
 
 void require_raster_memory(const CommonArgs& args, const Map& map, const RasterOptions& options,
-                           const std::string& step_option)
+                           const std::string& step_option, int rasters)
 {
     if (options.dims != 2) return;  // of a 3D raster, only poses near the ground are held
     constexpr double growth = 1.5;  // of a vector that does not know its size yet
@@ -121,7 +121,8 @@ void require_raster_memory(const CommonArgs& args, const Map& map, const RasterO
                             (sizeof(RasterPose) + (options.stance == Stance::Settled ? sizeof(RasterRest) : 0));
     const Bounds bounds = options.bounds.is_empty() ? map.bounds : options.bounds;
     const Vec3 size = bounds.max - bounds.min;
-    require_cell_memory({.per_item = per_pose}, step_option, options.step, size.x() * size.y(), memory_limit(args));
+    require_cell_memory({.per_item = rasters * per_pose}, step_option, options.step, size.x() * size.y(),
+                        memory_limit(args));
 }
 
 }  // namespace spawnfield::cli

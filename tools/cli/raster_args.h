@@ -35,8 +35,8 @@ void complete(RasterOptions& options, const RasterArgs& args, const Session& ses
 double default_step(const Map& map, const RasterOptions& options, int columns);
 
 /// Throws MemoryError if a 2D raster that is held in memory as a whole needs too much. `options` have their step,
-/// which is the value of `step_option`.
+/// which is the value of `step_option`. `rasters`: how many of them are held.
 void require_raster_memory(const CommonArgs& args, const Map& map, const RasterOptions& options,
-                           const std::string& step_option = "--step");
+                           const std::string& step_option = "--step", int rasters = 1);
 
 }  // namespace spawnfield::cli

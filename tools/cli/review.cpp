@@ -99,7 +99,7 @@ void check_options(const ReviewArgs& args, const CLI::App& command)
     if (args.serve) refuse(command, {"--out"}, "and --serve do not go together: the page is in the browser then");
     if (!args.serve) refuse(command, {"--port"}, "is only for --serve");
     if (args.is_settled()) return;
-    refuse(command, {"--pairs"}, "is only for settled robots; leave --stance level out");
+    refuse(command, {"--pairs", "--islands"}, "is only for settled robots; leave --stance level out");
     refuse(command, reach_option_names, "is only for settled robots; leave --stance level out");
 }
 
@@ -138,7 +138,7 @@ ReviewContents contents_of(const ReviewArgs& args, const CLI::App& command, cons
     if (is_update && !args.spawns.empty()) return contents;
     options.step = command.count("--raster") > 0 ? parse_positive("--raster", args.step)
                                                  : default_step(session.map, options, 500);
-    require_raster_memory(args, session.map, options, "--raster");
+    require_raster_memory(args, session.map, options, "--raster", args.headings);
     add_rasters(args, session, options, contents);
     summary.lap("query");
     return contents;
@@ -172,9 +172,7 @@ void serve(const ReviewArgs& args, const CLI::App& command, const Session& sessi
 
 Ending run_review(const ReviewArgs& args, const CLI::App& command, Summary& summary)
 {
-    if (!has_review_page())
-        throw std::runtime_error(
-            "this program was built without the review page; run tools/build-web.sh, and build it again");
+    require_review_page();
     check_options(args, command);
     RasterOptions options = raster_options(args, command);
     const Session session = open_session(args, summary);

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <set>
 
 namespace spawnfield::cli {
 namespace {
@@ -93,6 +94,37 @@ Json controls_json(const CLI::App& command)
     return out;
 }
 
+/// An option of the command line, with its values.
+struct GivenOption {
+    std::string name;
+    std::vector<std::string> words;  ///< of the command line
+    bool is_input = false;           ///< it is about the map or the robot, which are in memory already
+};
+
+/// Returns the options of the command line that hold for all queries of a page: those that are no controls, and regions
+/// that the page cannot draw.
+std::vector<GivenOption> given_options(const CLI::App& command)
+{
+    const std::set<std::string> of_page{"--out",     "--serve",     "--port",  "--spawns",     "--pairs",   "--islands",
+                                        "--threads", "--triangles", "--quiet", "--max-memory", "--summary", "--settle"};
+    std::vector<GivenOption> out;
+    for (const CLI::Option* const option : command.get_options()) {
+        if (option->count() == 0 || option->get_positional() || option->get_lnames().empty()) continue;
+        const std::string name = "--" + option->get_lnames().front();
+        const bool is_region = name == "--region" || name == "--keep-out";
+        const bool is_control = std::ranges::any_of(controls, [&](const Control& c) { return name == c.option; });
+        if (of_page.contains(name) || (is_control && !is_region)) continue;
+        const bool is_input = option->get_group() == help_group::changes || option->get_group() == help_group::robot;
+        if (option->get_items_expected_max() == 0) {
+            out.push_back({name, {name}, is_input});
+            continue;
+        }
+        for (const std::string& value : option->results())
+            if (!is_region || !value.starts_with('{')) out.push_back({name, {name, value}, is_input});
+    }
+    return out;
+}
+
 /// Runs commands for a page, and keeps their messages.
 class PageHost : public Host {
 public:
@@ -128,7 +160,7 @@ struct Refused {
 /// Answers the requests of a page.
 class LivePage {
 public:
-    explicit LivePage(const LiveReview& review) : review_(review) {}
+    explicit LivePage(const LiveReview& review) : review_(review), given_(given_options(review.command)) {}
 
     WebAnswer answer(const WebRequest& request)
     {
@@ -204,6 +236,27 @@ private:
         return robot;
     }
 
+    /// Removes the options of the command line that a command does not have.
+    void leave_out_unknown(const CLI::App& command, std::vector<std::string>& words) const
+    {
+        for (const GivenOption& given : given_)
+            if (command.get_option_no_throw(given.name) == nullptr) remove(given.words, words);
+    }
+
+    /// Returns the words without options about the map and the robot, which are in memory.
+    std::vector<std::string> without_inputs(std::vector<std::string> words) const
+    {
+        for (const GivenOption& given : given_)
+            if (given.is_input) remove(given.words, words);
+        return words;
+    }
+
+    static void remove(const std::vector<std::string>& some, std::vector<std::string>& words)
+    {
+        const auto found = std::ranges::search(words, some);
+        words.erase(found.begin(), found.end());
+    }
+
     /// Runs a command that writes nothing, with these inputs besides the map and the robot.
     Result run(std::vector<std::string> words, const std::map<std::string, std::any>& inputs = {}) const
     {
@@ -214,7 +267,8 @@ private:
         ChosenCommand chosen{.host = &host};
         CLI::App app;
         add_commands(app, shell_line(words), chosen, words[1]);
-        std::vector<std::string> all(words.begin() + 1, words.end());
+        leave_out_unknown(*app.get_subcommand(words[1]), words);
+        std::vector<std::string> all = without_inputs({words.begin() + 1, words.end()});
         all.insert(all.end(), {"--threads", std::to_string(review_.args.threads)});
         const auto start = std::chrono::steady_clock::now();
         try {
@@ -240,11 +294,16 @@ private:
         return {std::move(host.result), std::move(words), time.count(), std::move(host.notices)};
     }
 
+    /// Returns the words of a command: those of the command line, and the options of a request. Regions of a request
+    /// replace those of the command line.
     std::vector<std::string> command(const std::string& name, const Json& options, For use) const
     {
         std::vector<std::string> words{"spawnfield", name, review_.args.map, "--robot", robot_of(options)};
-        const std::vector<std::string> given = words_of(options, use);
-        words.insert(words.end(), given.begin(), given.end());
+        const std::vector<std::string> asked = words_of(options, use);
+        for (const GivenOption& given : given_)
+            if (std::ranges::count(asked, given.name) == 0)
+                words.insert(words.end(), given.words.begin(), given.words.end());
+        words.insert(words.end(), asked.begin(), asked.end());
         return words;
     }
 
@@ -350,6 +409,7 @@ private:
     }
 
     const LiveReview& review_;
+    const std::vector<GivenOption> given_;
     std::string page_;
 };
 

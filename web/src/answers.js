@@ -34,7 +34,7 @@ export function layerAnswer(json, layer, pose) {
     hit: hitOf(json, layer.hit()?.[pose] ?? 0),
     ground,
     quantities,
-    island: island || null,
+    island: island > 0 ? island - 1 : null,
     islandKnown: layer.hasIslands,
     drawnHeight: drawnHeight(layer, pose),
     source: `pose ${pose + 1} of ${layer.count} of layer ${layer.name}`,

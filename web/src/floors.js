@@ -14,7 +14,7 @@ export function cutAbove(floors, index, robotHeight) {
 
 /**
  * Returns {node, cutAt(z), showFloor(index), setIslands(islands)}. `heights` is [lowest, highest] of the
- * world in the scene. `actions`: setCut(z or null), flyToFloor(index), flyToIsland(index).
+ * world in the scene, `robotHeight()` that of the robot now. `actions`: setCut(z or null), flyToFloor(index), flyToIsland(index).
  */
 export function createFloors({ floors, islands, heights, robotHeight, actions }) {
   const [low, high] = heights;
@@ -43,7 +43,7 @@ export function createFloors({ floors, islands, heights, robotHeight, actions })
   function showFloor(index) {
     if (index >= floors.length) return;
     press(index);
-    cutAt(index < 0 ? null : cutAbove(floors, index, robotHeight));
+    cutAt(index < 0 ? null : cutAbove(floors, index, robotHeight()));
     if (index >= 0) actions.flyToFloor(index);
   }
 

@@ -72,6 +72,7 @@ export function createLive(live, firstCommand, actions) {
   const forms = new Map();
   const runs = [];
   let lastOptions = optionsNow();
+  const changedKinds = new Set(); // that the timer asks for
   let hasSpawns = false;
   let hasPressed = false; // the button that samples spawns
   let timer = 0;
@@ -83,6 +84,7 @@ export function createLive(live, firstCommand, actions) {
     role: 'status',
     text: 'Changes are sent to the program.',
   });
+  const notices = element('ul', { class: 'quiet', id: 'live-notices' });
   const command = element('pre', { id: 'live-command', text: firstCommand ?? '' });
   const runRows = element('tbody', { id: 'live-runs' });
 
@@ -122,6 +124,7 @@ export function createLive(live, firstCommand, actions) {
         drawMilliseconds: Math.round(done - decoded),
       });
       error.hidden = true;
+      notices.replaceChildren(...(pack.json.notices ?? []).map((text) => element('li', { text })));
       command.textContent = pack.json.command ?? '';
       state.textContent = `Done in ${Math.round(done - began)} ms.`;
     } catch (failure) {
@@ -177,10 +180,13 @@ export function createLive(live, firstCommand, actions) {
 
   function change(control, value) {
     values[control.option] = value;
+    if (control.for !== 'spawns') changedKinds.add('layers');
+    if (control.for === 'spawns' || (hasSpawns && control.for !== 'layers')) changedKinds.add('spawns');
     clearTimeout(timer);
     timer = setTimeout(() => {
-      if (control.for !== 'spawns') ask('layers', optionsNow());
-      if (control.for === 'spawns' || hasSpawns) askSpawns();
+      if (changedKinds.has('layers')) ask('layers', optionsNow());
+      if (changedKinds.has('spawns')) askSpawns();
+      changedKinds.clear();
     }, QUIET_MILLISECONDS);
   }
 
@@ -217,6 +223,7 @@ export function createLive(live, firstCommand, actions) {
     { class: 'block' },
     state,
     error,
+    notices,
     form,
     element(
       'div',
@@ -346,7 +353,7 @@ function controlForm(control, change, setter, actions) {
     value: value ?? '',
   });
   box.addEventListener('input', () => {
-    if (isNumber && box.value !== '' && !box.checkValidity()) return;
+    if (isNumber && !box.checkValidity()) return; // also of a number that is typed in part
     change(!isNumber ? box.value : box.value === '' ? null : Number(box.value));
   });
   const label = element('label', { class: 'control', title: help ?? '' }, head, box);
@@ -388,22 +395,21 @@ function flagForm({ name, option, value, help }, change, setter) {
 }
 
 function regionsForm({ name, option, value, help }, change, setter, actions) {
-  let polygons = regionsFromText(value, actions.regionHeight);
+  let polygons = [];
   const state = element('span', { class: 'quiet' });
-  const show = () => {
-    state.textContent = polygons.length === 1 ? '1 region' : `${polygons.length} regions`;
-    actions.showRegions(polygons);
+  // A region of the command line that the page cannot draw stays as it is until another one is drawn.
+  const show = (next) => {
+    polygons = next ?? [];
+    state.textContent = next === null ? 'a region' : polygons.length === 1 ? '1 region' : `${polygons.length} regions`;
+    actions.showRegions(option, polygons);
   };
   const set = (next) => {
-    polygons = next;
-    show();
-    change(regionsText(polygons));
+    show(next);
+    change(regionsText(next));
   };
-  setter((next) => {
-    polygons = regionsFromText(next, actions.regionHeight);
-    show();
-  });
-  state.textContent = `${polygons.length} regions`;
+  const showText = (text) => show(regionsFromText(text, actions.regionHeight));
+  setter(showText);
+  showText(value);
   return element(
     'div',
     { class: 'control', title: help ?? '', role: 'group', 'aria-label': name },

@@ -38,7 +38,8 @@ export function createMap(pack, canvas, scriptText, { isSoftware }) {
     verdictLayer,
     robot,
     heights: [bounds.min[2] + origin[2], bounds.max[2] + origin[2]],
-    robotRadius: Math.max(robot.boundingSphere.radius, 0.1),
+    robotBounds: json.robot.bounds,
+    robotRadius: radiusOf(robot),
     cameraViews: createCameraViews(view),
     picking: createPicking(world, json.robot.bounds, origin, scriptText),
     spawns: [], // {pose, verdict, list, index} of all lists
@@ -51,6 +52,8 @@ export function createMap(pack, canvas, scriptText, { isSoftware }) {
   view.scene.add(pathLines(map));
   return map;
 }
+
+const radiusOf = (geometry) => Math.max(geometry.boundingSphere.radius, 0.1);
 
 /** Calls a change of the map and draws it. */
 export function changed(map, change) {
@@ -100,8 +103,11 @@ export function drawSpawns(map, lists) {
 /** Changes the robot to that of another pack. */
 export function changeRobot(map, pack) {
   map.robot = robotGeometry(pack);
-  map.picking.setRobot(pack.json.robot.bounds);
+  map.robotBounds = pack.json.robot.bounds;
+  map.robotRadius = radiusOf(map.robot);
+  map.picking.setRobot(map.robotBounds);
   drawRobots(map);
+  drawMarkers(map);
 }
 
 function drawRobots(map) {
@@ -114,7 +120,7 @@ function drawRobots(map) {
 /** Draws the markers of spawns and of marks. */
 export function drawMarkers(map) {
   discard(map.markers);
-  const above = map.json.robot.bounds.max[2] + 0.3 * map.robotRadius;
+  const above = map.robotBounds.max[2] + 0.3 * map.robotRadius;
   const valid = map.json.verdicts.findIndex(({ name }) => name === 'valid');
   const over = ([x, y, z], heights) => [x, y, z + heights * above];
   const ofSpawns = map.spawns.map(({ pose, verdict }) => {

@@ -2,6 +2,7 @@
 import { createLines, discard } from './lines.js';
 
 const COLOR = '#d81b60';
+const KEEP_OUT_COLOR = '#111111';
 
 /** Returns polygons (arrays of [x, y, z]) as the text of a GeoJSON geometry in the scene's x and y; "" without any. */
 export function regionsText(polygons) {
@@ -12,25 +13,35 @@ export function regionsText(polygons) {
   );
 }
 
-/** Returns the polygons of a text of regionsText(), at a height. */
+/** Returns the polygons of a text of regionsText(), at a height; null if the text is something else. */
 export function regionsFromText(text, z) {
   if (!text) return [];
-  const { type, coordinates } = JSON.parse(text);
-  return (type === 'Polygon' ? [coordinates] : coordinates).map(([ring]) =>
-    ring.slice(0, -1).map(([x, y]) => [x, y, z]),
-  );
+  try {
+    const { type, coordinates } = JSON.parse(text);
+    if (type !== 'Polygon' && type !== 'MultiPolygon') return null;
+    const rings = type === 'Polygon' ? [coordinates] : coordinates;
+    if (rings.some((polygon) => polygon.length !== 1)) return null; // holes
+    return rings.map(([ring]) => ring.slice(0, -1).map(([x, y]) => [x, y, z]));
+  } catch {
+    return null;
+  }
 }
 
-/** Returns {active, begin(done), click(place), finish(), cancel(), show(polygons)}. Places are in the scene. */
+/**
+ * Returns {active, begin(done), click(place), finish(), cancel(), show(option, polygons)}: each option has polygons of
+ * its own. Places are in the scene.
+ */
 export function createRegions(view, origin, changed) {
   let corners = null;
   let whenDone = null;
-  let polygons = [];
+  const shown = new Map(); // option: polygons
   let drawn = null;
 
   function redraw() {
     discard(drawn);
-    const lines = polygons.map((places) => ({ places, color: COLOR, closed: true }));
+    const lines = [...shown].flatMap(([option, polygons]) =>
+      polygons.map((places) => ({ places, color: option === '--keep-out' ? KEEP_OUT_COLOR : COLOR, closed: true })),
+    );
     if (corners?.length > 1) lines.push({ places: corners, color: COLOR });
     // A single corner is shown as a short line.
     if (corners?.length === 1)
@@ -70,8 +81,8 @@ export function createRegions(view, origin, changed) {
     cancel() {
       if (corners) end(null);
     },
-    show(next) {
-      polygons = next;
+    show(option, polygons) {
+      shown.set(option, polygons);
       redraw();
     },
   };

@@ -81,7 +81,7 @@ function createSettings(page) {
     floors: json.floors ?? [],
     islands: islands(),
     heights: map.heights,
-    robotHeight: json.robot.bounds.max[2] - json.robot.bounds.min[2],
+    robotHeight: () => map.robotBounds.max[2] - map.robotBounds.min[2],
     actions: floorActions(page),
   });
   byId('settings').append(page.legend.node, page.floors.node);
@@ -200,14 +200,17 @@ function liveActions(page) {
       page.layers.forEach(map.verdictLayer.forget);
       page.layers = answer.json.layers.map((layer) => readLayer(answer, layer));
       if (answer.json.robot) changeRobot(map, answer);
+      page.hasOldSpawns = page.spawns.some(({ isSampled }) => !isSampled);
       if (answer.json.islands) {
         json.islands = answer.json.islands;
         page.floors.setIslands(json.islands);
       }
       showLayer(page, Math.min(page.layerIndex, page.layers.length - 1));
+      showFacts(page);
     },
     showSpawns(answer, isAsked) {
       for (const list of answer.json.spawns) {
+        list.isSampled = true;
         const before = page.spawns.findIndex(({ file }) => file === list.file);
         if (before >= 0) page.spawns[before] = list;
         else page.spawns.push(list);
@@ -261,6 +264,7 @@ function showFacts(page) {
   const text = `${grouped(refused)} of ${all} spawns ${refused === 1 ? 'is' : 'are'} not valid`;
   const button = element('button', { type: 'button', id: 'refused-fact', text, on: { click: press } });
   byId('facts').replaceChildren();
+  if (page.hasOldSpawns) byId('facts').append(element('li', { text: 'spawns of files have their first verdicts' }));
   if (refused > 0) byId('facts').append(element('li', {}, button));
   else if (map.spawns.length > 0) byId('facts').append(element('li', { text: `all ${all} spawns are valid` }));
   if (json.world.share < 1) byId('facts').append(simplifiedFact(json.world.share));
