@@ -253,8 +253,8 @@ private:
 
     static void remove(const std::vector<std::string>& some, std::vector<std::string>& words)
     {
-        const auto found = std::ranges::search(words, some);
-        words.erase(found.begin(), found.end());
+        const auto found = std::search(words.begin(), words.end(), some.begin(), some.end());
+        if (found != words.end()) words.erase(found, found + std::ssize(some));
     }
 
     /// Runs a command that writes nothing, with these inputs besides the map and the robot.
