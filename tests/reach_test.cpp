@@ -3,6 +3,7 @@
 #include "compare.h"
 #include "reach/disjoint_sets.h"
 #include "reach/head_room.h"
+#include "reach/level_ground.h"
 #include "reach/reach_graph.h"
 #include "reach/way_judge.h"
 #include "rest_robots.h"
@@ -651,6 +652,61 @@ TEST_CASE("a robot over an end of the ground is proven if its feet on the ground
     CHECK(proves(wheeled(), {1.7, 0}, 0));                      // a part of its body is over the end
     CHECK_FALSE(proves(wheeled(), {1.8, 0}, 0));                // its front wheels, too
     CHECK(proves(wheeled(), {1.73, 0}, std::numbers::pi / 2));  // parts of two wheels
+}
+
+TEST_CASE("a robot that is proven to tip at an end of the ground does not stand there")
+{
+    std::size_t proven = 0, all = 0;
+    for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+        CAPTURE(seed);
+        Random random(seed);
+        const double yaw = random.chance(0.3) ? 0 : random.between(-std::numbers::pi, std::numbers::pi);
+        Scene scene;
+        add_shape(scene, "floor", Label::Terrain, box_shape({8, 8, 1}, {{0, 0, -0.5}, rotation_from_rpy(0, 0, yaw)}));
+        if (random.chance(0.3)) add_floor(scene, random, 6, 6, random.between(-1.5, -1e-3));
+        Vec3 size(random.between(0.2, 1), random.between(0.2, 1), random.between(0.1, 0.6));
+        Robot robot = boxy(size);
+        robot.mass_center = size.cwiseProduct(Vec3(random.between(-0.3, 0.3), random.between(-0.3, 0.3), 0.5));
+        if (random.chance(0.2)) robot.parts.push_back(shape_part(box_shape({0.01, 0.01, 0.01}, {{0, 0, size.z()}})));
+        JudgeOptions options;
+        options.stand.min_stability = random.between(0, 0.05);
+        const TestMap map = map_of(scene, 0.2);
+        const Judge judge(map, robot, options);
+        LevelGround level(judge.impl());
+        for (int n = 0; n < 10; ++n) {
+            const double past = random.chance(0.3) ? 0 : random.between(0, random.chance(0.5) ? 0.01 : 0.3);
+            const Vec3 place = rotation_from_rpy(0, 0, yaw) * Vec3(4 - past, random.between(-4, 4), 0);
+            level.set_place(place.head<2>(), 2);
+            if (!level.set_layer(0)) continue;
+            for (int heading = 0; heading < lattice_headings; ++heading) {
+                ++all;
+                if (!level.tips_at(heading)) continue;
+                ++proven;
+                CHECK_FALSE(level.stands_at(heading));
+                CHECK(judge.settle(place, lattice_yaw(heading)).verdict != Verdict::Valid);
+            }
+        }
+    }
+    CHECK(proven > 3000);
+    CHECK(all > 2 * proven);
+}
+
+TEST_CASE("a robot is not proven to tip where a lower floor or a part of another shape may hold it")
+{
+    const auto proves = [](const Robot& robot, double lower) {
+        Scene scene;
+        add_block(scene, {-4, -4, -0.001}, {4, 4, 0});
+        add_block(scene, {-8, -8, lower - 1}, {8, 8, lower});
+        const TestMap map = map_of(scene, 0.2);
+        const Judge judge(map, robot);
+        LevelGround level(judge.impl());
+        level.set_place({4, 0}, 2);
+        return level.set_layer(0) && level.tips_at(0);
+    };
+    CHECK(proves(boxy({0.5, 0.3, 0.25}), -2));
+    CHECK_FALSE(proves(boxy({0.5, 0.3, 0.25}), -0.01));
+    CHECK_FALSE(proves(boxy({0.5, 0.3, 0.25}), -0.4));
+    CHECK_FALSE(proves(wheeled(), -4));
 }
 
 TEST_CASE("what is proven of real robots is right", "[real]")

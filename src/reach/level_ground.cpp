@@ -17,6 +17,7 @@ constexpr double round_miss = 2e-3;   // share of the radius of round parts by w
 constexpr std::size_t most = 256;     // solids near a layer; of more, the comparisons take longer than they save
 constexpr double crack = 1e-7;        // m: nothing gets into a narrower gap between two pieces of ground
 constexpr double contact_gap = 1e-3;  // m: as in Settler
+constexpr double end_slack = 1e-5;    // m: more than rounding and `crack` move the ends of the ground
 
 /// Returns the extreme points of a robot in horizontal directions that are tilted by `down`, as corners of a polygon.
 template <class KeepPart, class KeepPoint>
@@ -135,6 +136,9 @@ LevelGround::LevelGround(const Judge::Impl& shared) : shared_(shared)
             support.insert(support.end(), foot.begin(), foot.end());
             feet_.push_back(std::move(foot));
         }
+    has_flat_base_ = parts.size() == 1 && parts[0].is_polyhedron() && feet_.size() == 1 &&
+                     std::all_of(footprint_.begin(), footprint_.end(),
+                                 [&](const Vec2& corner) { return depth_in(feet_[0], corner) >= -crack; });
     mass_ = mass_center_of(shared.robot);
     const double raised = limits.lift - lowest_;
     if (shared.options.exhaustive || limits.drop || limits.friction < least_friction ||
@@ -243,12 +247,14 @@ bool LevelGround::set_layer(double height)
     ends_.clear();
     unevenness_ = 0;
     is_clear_ = true;
-    has_ends_ = false;
+    has_ends_ = can_tip_ = false;
     if (is_unsealed_) return false;
+    double below = -std::numeric_limits<double>::infinity();  // highest of the solids that are lower than the ground, m
     const double top = z() + highest_ + shared_.options.stand.lift + tolerance;
     bool is_on_ground = false;
     std::size_t others = 0;
     for (const Solid& solid : solids_) {
+        if (solid.high < height_ - flatness_) below = std::max(below, solid.high);
         if (solid.high < height_ - flatness_ || solid.low > top) continue;
         if (const double uneven = unevenness_of(solid); uneven <= flatness_) {
             ground_.push_back(&solid);
@@ -262,6 +268,8 @@ bool LevelGround::set_layer(double height)
         if (ground_.size() + others > most) return false;
     }
     for (std::size_t k = 0; k < ground_.size() && is_on_ground; ++k) find_ends(*ground_[k]);
+    can_tip_ = has_flat_base_ && is_on_ground && is_clear_ && has_ends_ && unevenness_ == 0 &&
+               below < height_ - 2 * shared_.settler().reach();
     return is_on_ground;
 }
 
@@ -335,6 +343,26 @@ bool LevelGround::stands_at_end(const Turned& robot) const
     for (const Polygon2& foot : feet) support.insert(support.end(), foot.begin(), foot.end());
     const double flatness = largest_flatness(depth_in(convex_hull(std::move(support)), robot.mass));
     return flatness > 0 && unevenness_ <= flatness;
+}
+
+/// Returns whether the mass of the robot is beyond a straight end of the ground, or too near to it.
+bool LevelGround::tips(const Turned& robot) const
+{
+    const double least = *shared_.options.stand.min_stability - 2 * end_slack;
+    return std::any_of(ends_.begin(), ends_.end(), [&](const Outline& end) {
+        const double margin = edge_normal(end[0], end[1]).normalized().dot(end[0] - robot.mass);
+        return margin < least && is_last(end);
+    });
+}
+
+/// Returns whether all ground is on the near side of the line through an end.
+bool LevelGround::is_last(const Outline& end) const
+{
+    const Vec2 outward = edge_normal(end[0], end[1]).normalized();
+    const auto is_near = [&](const Vec2& corner) { return outward.dot(corner - end[0]) <= end_slack; };
+    return std::all_of(ground_.begin(), ground_.end(), [&](const Solid* const solid) {
+        return std::all_of(solid->outline.span().begin(), solid->outline.span().end(), is_near);
+    });
 }
 
 }  // namespace spawnfield

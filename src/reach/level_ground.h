@@ -27,6 +27,11 @@ namespace spawnfield {
 /// Where the ground ends below the robot, the same holds for the part of its feet that has ground below it.
 ///
 /// Everything else must be farther from the robot than it moves.
+///
+/// It also proves that a robot does not stand at an end of the ground: one that touches level ground only with the
+/// whole of its flat base, as a box does, when its mass is beyond a straight end or too near to it. All contacts are
+/// before that end, so the margin is at most the distance of the mass from it. If the mass is beyond it, the robot tips
+/// over it, by which the mass gets farther away.
 class LevelGround {
 public:
     /// How far a point of the robot may be from where it is on the plane, m. The true limit is 1 mm.
@@ -59,6 +64,8 @@ public:
     bool stands(double yaw) const { return has_nothing_near() || stands(turned(yaw)); }
     /// The same at a heading of the drivable graph.
     bool stands_at(int heading) const { return has_nothing_near() || stands(at_headings_[std::size_t(heading)]); }
+    /// Returns whether the robot stands at no place of the layer at this heading. False: not proven.
+    bool tips_at(int heading) const { return can_tip_ && tips(at_headings_[std::size_t(heading)]); }
     /// Returns the height of its origin, m.
     double z() const { return height_ - lowest_; }
 
@@ -91,6 +98,8 @@ private:
     bool has_nothing_near() const { return obstacles_.empty() && ends_.empty(); }
     bool stands(const Turned& robot) const;
     bool stands_at_end(const Turned& robot) const;
+    bool tips(const Turned& robot) const;
+    bool is_last(const Outline& end) const;
     Solid triangle(const std::array<Vec3, 3>& corners, bool is_terrain) const;
     Solid primitive(const Shape& shape, bool is_terrain) const;
     double largest_flatness(double margin) const;
@@ -105,6 +114,7 @@ private:
     std::vector<Turned> at_headings_;  ///< for each heading of the drivable graph
     double lowest_ = 0, highest_ = 0;  ///< of the robot's points, in its frame, m
     double flatness_ = 0;              ///< m; 0: nothing can be proven
+    bool has_flat_base_ = false;       ///< it is one polyhedron, whose lowest face is its whole outline
     double gap_ = 0;                   ///< m; what is farther than this from the footprint does not meet the robot
     double reach_ = 0;                 ///< m; largest distance of the footprint from its origin, and the gap
     Vec3 origin_ = Vec3::Zero();
@@ -115,6 +125,8 @@ private:
     bool is_unsealed_ = false;
     bool is_clear_ = false, has_ends_ = false;  ///< for is_clear() and is_open()
     bool has_water_ = false;                    ///< there is water within the radius
+    /// The ground is exactly level, has ends, and there is nothing below them that could hold the robot.
+    bool can_tip_ = false;
     std::vector<const Solid*> ground_;
     double unevenness_ = 0;  ///< largest height of the ground above or below the layer, m
     /// Outlines of all else that may meet the robot, without those that are too far away at every yaw.

@@ -110,6 +110,8 @@ void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out, Detail
             StatePose& state = known.poses[std::size_t(heading)];
             if (is_level && level_.stands_at(heading)) {
                 state = {.z = level_.z(), .is_exact = false};
+            } else if (is_level && level_.tips_at(heading)) {
+                continue;
             } else {
                 const SettledPose pose = stand_.judge(column, {at.x(), at.y(), height}, lattice_yaw(heading));
                 if (pose.verdict != Verdict::Valid) continue;
