@@ -669,7 +669,7 @@ TEST_CASE("images and raw numbers need options that describe them")
     CHECK_THROWS_WITH(load("a.raw", "raw: {type: float16, rows: 2, cols: 3}"),
                       wrong + "raw.type is \"float16\", needs one of uint8, uint16, int16, float32, float64 (line 1)");
     CHECK_THROWS_WITH(load("a.raw", "raw: {type: uint8, rows: 2.5, cols: 3}"),
-                      Contains("raw.rows is 2.5, needs a whole number up to 67108864"));
+                      Contains("raw.rows is 2.5, needs a whole number from 1 to 67108864"));
     CHECK_THROWS_WITH(load("a.raw", "size: 3"), Contains("size is 3, needs a list"));
     CHECK_THROWS_WITH(load("a.raw", "sise: [1, 1]"), Contains("sise is not a known key"));
     CHECK_THROWS_WITH(load("a.raw", "size: [1, 1"), Contains("needs keys such as size: [513, 513], z: [0, 75]"));

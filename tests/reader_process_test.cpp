@@ -258,7 +258,8 @@ TEST_CASE("files outside of the folders of --confine are refused, also by links;
                  "<?xml version='1.0'?><sdf version='1.6'><world name='w'><include><uri>model://in2</uri>"
                  "</include></world></sdf>");
     folder.write("in/robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: ../b.obj}]\n");
-    const std::string words = ", outside of the folders of --confine; move it there, or add its folder";
+    const std::string words =
+        ", outside of the folders from which files may be read; move it there, or allow its folder, too (--confine)";
     const fs::path real = fs::canonical(folder.path());
 
     CHECK(run_program(folder, "info in/scene.yaml --confine in").status == 0);
@@ -280,4 +281,36 @@ TEST_CASE("files outside of the folders of --confine are refused, also by links;
     const ProgramRun bake = run_program(folder, "bake in/up.yaml -o map --summary s.json");
     CHECK_THAT(bake.err, Contains("1 file from outside of the scene's folder; "));
     CHECK_THAT(bytes_of(folder / "s.json"), Contains("\"outside_files\": [\n    \"" + (real / "b.obj").string()));
+}
+
+TEST_CASE("audit reads only files of the scene's project, of folders that are named, and downloaded models")
+{
+    const TempFolder folder;
+    const std::string mesh = "v -2 -2 0\nv 2 -2 0\nv 2 2 0\nv -2 2 0\nf 1 2 3\nf 1 3 4\n";
+    for (const std::string file : {"project/worlds/a.obj", "project/meshes/a.obj", "other/a.obj"})
+        folder.write(file, mesh);
+    const auto scene = [&](const std::string& name, const std::string& file) {
+        folder.write("project/" + name,
+                     "format: spawnfield-scene/1\nparts: [{name: a, label: terrain, mesh: " + file + "}]\n");
+    };
+    scene("worlds/own.yaml", "a.obj");
+    scene("worlds/beside.yaml", "../meshes/a.obj");
+    scene("worlds/beyond.yaml", "../../other/a.obj");
+    scene("beyond.yaml", "../other/a.obj");
+    const auto audit = [&](const std::string& words) {
+        return run_program(folder, "audit project/" + words + " --robot box:0.3,0.2,0.2");
+    };
+    for (const std::string name : {"worlds/own", "worlds/beside"}) CHECK(audit(name + ".yaml").status == 0);
+    for (const std::string name : {"worlds/beyond", "beyond"}) {
+        const ProgramRun run = audit(name + ".yaml");
+        CAPTURE(run.err);
+        CHECK(run.status == 4);
+        CHECK_THAT(run.err, Contains("other/a.obj, outside of the folders from which files may be read"));
+        for (const std::string allowed : {"--confine .", "--confine /", "--trusted", "--model-path other"})
+            CHECK(audit(name + ".yaml " + allowed).status == 0);
+        CHECK(run_program(folder, "info project/" + name + ".yaml").status == 0);
+    }
+    CHECK(audit("worlds/beside.yaml --confine project/worlds").status == 4);
+    folder.write("project/robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: ../other/a.obj}]\n");
+    CHECK(run_program(folder, "audit project/worlds/own.yaml --robot project/robot.yaml").status == 4);
 }

@@ -41,6 +41,13 @@ SPAWNFIELD_API Scene load_scene_apart(const std::filesystem::path& file, const S
 SPAWNFIELD_API Robot load_robot_apart(const std::string& robot, const RobotOptions& options,
                                       const ReaderProcess& process);
 
+/// Returns folders for ReaderProcess::confine, for a scene or robot from anywhere: the folder of the file, or the one
+/// above it if its name is usual inside of a project (worlds, urdf, …); `model_paths`, those of GZ_SIM_RESOURCE_PATH,
+/// IGN_GAZEBO_RESOURCE_PATH and GAZEBO_MODEL_PATH, and the models that Gazebo has downloaded (~/.gz/fuel,
+/// ~/.ignition/fuel). Folders that do not exist are left out.
+SPAWNFIELD_API std::vector<std::filesystem::path> usual_folders(const std::filesystem::path& file,
+                                                                const std::vector<std::filesystem::path>& model_paths);
+
 /// If these are the arguments that load_scene_apart() and load_robot_apart() start a program with: reads what they ask
 /// for, and returns the status with which main() must end. Otherwise returns nothing.
 SPAWNFIELD_API std::optional<int> serve_reader(int argc, char** argv);

@@ -62,8 +62,10 @@ void ReaderLimits::opens(const std::filesystem::path& file, std::uint64_t bytes)
     if (!confined_.empty() &&
         std::none_of(confined_.begin(), confined_.end(),
                      [&](const std::filesystem::path& folder) { return is_in_folder(path, folder); }))
-        throw FileError(file.string(), "is " + (path == file ? "" : path.string() + ", ") +
-                                           "outside of the folders of --confine; move it there, or add its folder");
+        throw FileError(file.string(),
+                        "is " + (path == file ? "" : path.string() + ", ") +
+                            "outside of the folders from which files may be read; move it there, or allow "
+                            "its folder, too (--confine)");
     if (is_reading_ && its_files_.insert(path).second) {
         its_bytes_ += bytes;
         limit_time();

@@ -17,10 +17,7 @@ std::optional<std::size_t> count_in(const YamlMap& map, const std::string& key)
 {
     constexpr double most = 1e9;
     if (!map.has(key)) return std::nullopt;
-    const double value = map.finite(key);
-    if (value != std::floor(value) || value < 0 || value > most)
-        map.fail(key, "is " + number(value) + ", needs a whole number >= 0");
-    return std::size_t(value);
+    return std::size_t(map.whole(key, 0, most));
 }
 
 /// Reads one pose of `require`: [x, y, z, yaw] in m and rad.

@@ -90,6 +90,14 @@ double YamlMap::positive(const std::string& key) const
     return value;
 }
 
+std::int64_t YamlMap::whole(const std::string& key, double low, double high) const
+{
+    const double value = finite(key);
+    if (value != std::floor(value) || value < low || value > high)
+        fail(key, "is " + number(value) + ", needs a whole number from " + number(low) + " to " + number(high));
+    return std::int64_t(value);
+}
+
 std::vector<double> YamlMap::numbers(const YAML::Node& values, const std::string& key, std::size_t count) const
 {
     if (!values.IsSequence()) fail(key, "is " + scalar_of(values) + ", needs a list");

@@ -4,6 +4,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <string>
@@ -33,9 +34,10 @@ public:
                        const std::string& fallback) const;
     double positive(const std::string& key) const;  ///< finite, > 0
     double finite(const std::string& key) const;
-    Vec3 vector(const std::string& key) const;                 ///< three finite numbers
-    Vec3 positive_vector(const std::string& key) const;        ///< three finite numbers > 0
-    std::array<double, 2> pair(const std::string& key) const;  ///< two finite numbers
+    std::int64_t whole(const std::string& key, double low, double high) const;  ///< from low to high, at most 2^53
+    Vec3 vector(const std::string& key) const;                                  ///< three finite numbers
+    Vec3 positive_vector(const std::string& key) const;                         ///< three finite numbers > 0
+    std::array<double, 2> pair(const std::string& key) const;                   ///< two finite numbers
     std::array<double, 2> positive_pair(const std::string& key) const;
     Vec3 scale() const;                                       ///< `scale`: one number or three, > 0; 1 if it is missing
     std::vector<Vec3> vectors(const std::string& key) const;  ///< a list of three finite numbers each

@@ -5,7 +5,6 @@
 #include <spawnfield/fleet_file.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <set>
@@ -20,15 +19,6 @@ double at_least_zero(const YamlMap& map, const std::string& key)
     const double value = map.finite(key);
     if (value < 0) map.fail(key, "is " + number(value) + ", needs >= 0");
     return value;
-}
-
-/// Reads a whole number in a range.
-std::size_t whole(const YamlMap& map, const std::string& key, double low, double high)
-{
-    const double value = map.finite(key);
-    if (value != std::floor(value) || value < low || value > high)
-        map.fail(key, "is " + number(value) + ", needs a whole number from " + number(low) + " to " + number(high));
-    return std::size_t(value);
 }
 
 std::optional<std::string> given_text(const YamlMap& map, const std::string& key)
@@ -105,7 +95,7 @@ FormationPlan formation_in(const YamlMap& map)
     std::vector<std::string> known{"shape", "spacing", "at", "heading"};
     if (formation.form == Form::Grid) known.push_back("columns");
     map.only(known);
-    if (map.has("columns")) formation.columns = int(whole(map, "columns", 1, 1e6));
+    if (map.has("columns")) formation.columns = int(map.whole("columns", 1, 1e6));
     if (map.has("at")) formation.at = place_in(map, "at");
     if (map.has("heading")) read_heading(map, formation);
     return out;
@@ -165,13 +155,13 @@ FleetFileKind kind_in(const YamlMap& map, const fs::path& folder)
     check_name(map, out.name);
     if (!out.robot.starts_with("box:")) out.robot = (folder / out.robot).string();
     if (map.has("model")) out.model = in_folder(folder, map.text("model"));
-    if (map.text("count") != "fill") out.count = whole(map, "count", 1, double(max_spawns));
+    if (map.text("count") != "fill") out.count = std::size_t(map.whole("count", 1, double(max_spawns)));
     if (map.has("min_distance")) out.min_distance = at_least_zero(map, "min_distance");
     if (map.has("max_step")) out.max_step = at_least_zero(map, "max_step");
     if (map.has("max_slope")) out.max_slope = map.positive("max_slope");
     if (map.has("reach_step")) out.reach_step = map.positive("reach_step");
     if (map.has("fill_step")) out.fill_step = map.positive("fill_step");
-    if (map.has("floor")) out.floor = int(whole(map, "floor", 0, 1e6));
+    if (map.has("floor")) out.floor = int(map.whole("floor", 0, 1e6));
     out.yaw = given_text(map, "yaw");
     out.z = given_text(map, "z");
     out.layers = given_text(map, "layers");

@@ -10,6 +10,7 @@
 
 #include <spawnfield/error.h>
 #include <spawnfield/output_file.h>
+#include <spawnfield/terrain.h>
 
 #include <fcl/config.h>
 #include <libdeflate.h>
@@ -96,8 +97,8 @@ GridFrame read_frame(const YamlMap& root)
     frame.x0 = map.finite("x0");
     frame.y0 = map.finite("y0");
     frame.cell = map.positive("cell");
-    frame.rows = int(map.positive("rows"));
-    frame.cols = int(map.positive("cols"));
+    frame.rows = int(map.whole("rows", 1, max_side));
+    frame.cols = int(map.whole("cols", 1, max_side));
     return frame;
 }
 
@@ -280,7 +281,7 @@ MapYaml read_map_yaml(const fs::path& folder)
     if (format > oldest_format) out.map.floors = read_floors(root);
     if (root.has("origin")) out.map.origin = read_origin(root.map("origin"));
     out.map.is_unlabelled = root.has("unlabelled");
-    out.map.layers = int(root.finite("layers"));
+    out.map.layers = int(root.whole("layers", 0, 1e9));
     out.map.scene_file = root.map("scene").text("file");
     out.map.scene_hash = root.map("scene").text("xxh64");
     out.frame = read_frame(root);
@@ -290,7 +291,7 @@ MapYaml read_map_yaml(const fs::path& folder)
     for (const std::string& name : files.keys()) {
         const YamlMap entry = files.map(name);
         out.files.push_back(
-            {name, entry.text("xxh64"), entry.text("head_xxh64", ""), std::uintmax_t(entry.finite("bytes"))});
+            {name, entry.text("xxh64"), entry.text("head_xxh64", ""), std::uintmax_t(entry.whole("bytes", 0, 0x1p53))});
     }
     return out;
 }

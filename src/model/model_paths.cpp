@@ -65,16 +65,15 @@ fs::path found_in(const fs::path& folder, const fs::path& inside)
 /// used.
 fs::path found_in_fuel_cache(const std::string& uri)
 {
-    const char* const home = std::getenv("HOME");
     std::vector<std::string> words;
     for (const fs::path& word : fs::path(without("https://", uri))) words.push_back(word.string());
-    if (home == nullptr || words.size() < 5) return {};
+    if (words.size() < 5) return {};
     std::string name = lower_case(words[4]);
     for (std::size_t space = name.find("%20"); space != std::string::npos; space = name.find("%20"))
         name.replace(space, 3, " ");
     const std::string owner = lower_case(words[2]);
-    for (const char* const cache : {".gz/fuel", ".ignition/fuel"}) {
-        const fs::path versions = fs::path(home) / cache / words[0] / owner / words[3] / name;
+    for (const fs::path& cache : fuel_caches()) {
+        const fs::path versions = cache / words[0] / owner / words[3] / name;
         double newest = 0;
         std::error_code none;
         for (const fs::directory_entry& entry : fs::directory_iterator(versions, none)) {
@@ -117,10 +116,23 @@ fs::path sdf_file_of(const fs::path& folder)
 
 }  // namespace
 
-ModelPaths::ModelPaths(const std::vector<Path>& given, const Path& file) : named_(given)
+std::vector<fs::path> named_model_folders(const std::vector<fs::path>& given)
 {
+    std::vector<fs::path> out = given;
     for (const char* const variable : {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH"})
-        add_variable(variable, named_);
+        add_variable(variable, out);
+    return out;
+}
+
+std::vector<fs::path> fuel_caches()
+{
+    const char* const home = std::getenv("HOME");
+    if (home == nullptr) return {};
+    return {fs::path(home) / ".gz/fuel", fs::path(home) / ".ignition/fuel"};
+}
+
+ModelPaths::ModelPaths(const std::vector<Path>& given, const Path& file) : named_(named_model_folders(given))
+{
     const Path absolute = fs::absolute(file).lexically_normal();
     for (Path folder = absolute.parent_path(); folder != folder.root_path(); folder = folder.parent_path()) {
         above_.push_back(folder);

@@ -9,6 +9,13 @@
 
 namespace spawnfield {
 
+/// Returns the folders of models that the user has named: these, and then those of GZ_SIM_RESOURCE_PATH,
+/// IGN_GAZEBO_RESOURCE_PATH and GAZEBO_MODEL_PATH.
+std::vector<std::filesystem::path> named_model_folders(const std::vector<std::filesystem::path>& given);
+
+/// Returns the folders in which Gazebo keeps the models that it has downloaded. They need not exist.
+std::vector<std::filesystem::path> fuel_caches();
+
 /// Finds the files that URIs in SDF and URDF files name: model://, package://, file://, Fuel's https://, and relative
 /// paths.
 class ModelPaths {

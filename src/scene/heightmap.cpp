@@ -19,14 +19,8 @@ RawLayout read_raw_layout(const YamlMap& map)
     const std::array names{"uint8", "uint16", "int16", "float32", "float64"};
     const std::string type = map.one_of("type", {"uint8", "uint16", "int16", "float32", "float64"}, "");
     raw.type = RawLayout::Type(std::find(names.begin(), names.end(), type) - names.begin());
-    const auto count = [&](const char* key) {
-        const double value = map.positive(key);
-        if (value != std::floor(value) || value > double(max_heights))
-            map.fail(key, "is " + number(value) + ", needs a whole number up to " + std::to_string(max_heights));
-        return int(value);
-    };
-    raw.rows = count("rows");
-    raw.cols = count("cols");
+    raw.rows = int(map.whole("rows", 1, double(max_heights)));
+    raw.cols = int(map.whole("cols", 1, double(max_heights)));
     return raw;
 }
 

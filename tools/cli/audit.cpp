@@ -221,6 +221,7 @@ void add_bake_options(CLI::App& command, AuditArgs& args)
 void add_audit(CLI::App& app, ChosenCommand& chosen)
 {
     auto args = std::make_shared<AuditArgs>();
+    args->confines_usually = true;  // audits are for worlds from anywhere
     CLI::App& command = *app.add_subcommand("audit", "Report on a world and its faults, with rules for CI");
     command.add_option("scene", args->map, "Scene or world file, as for `bake`, or a map folder")->required();
     command

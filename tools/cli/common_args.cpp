@@ -39,8 +39,12 @@ void add_trusted(CLI::App& command, CommonArgs& args)
         "with limits of memory and time, because damaged or hostile files can crash the libraries for them");
     command
         .add_option("--confine", args.confine,
-                    "Refuse scenes and robots that name files outside of this folder, also by links (repeatable; the "
-                    "scene and the robot must lie in one of the folders, too)")
+                    std::string("Refuse scenes and robots that name files outside of this folder, also by links "
+                                "(repeatable; the scene and the robot must lie in one of the folders, too)") +
+                        (args.confines_usually ? ". Default: its own folder, or the one above if that is called "
+                                                 "worlds, urdf or the like; --model-path; GZ_SIM_RESOURCE_PATH, "
+                                                 "GAZEBO_MODEL_PATH; downloaded models. All files: --confine /"
+                                               : ""))
         ->allow_extra_args(false)
         ->check(CLI::ExistingDirectory);
 }

@@ -20,8 +20,10 @@ struct CommonArgs {
     std::string summary;
     std::string max_memory;            ///< 8GB; empty: 80 % of what is available
     bool trusted = false;              ///< read scenes and robots in this process; set by --trusted
-    std::vector<std::string> confine;  ///< folders to which --confine restricts files; empty: none
-    bool allow_empty = false;          ///< files of poses may contain no pose; set by --allow-empty
+    std::vector<std::string> confine;  ///< folders to which --confine restricts files; empty: see confines_usually
+    bool confines_usually =
+        false;                 ///< without --confine, files are restricted to usual_folders(), not allowed anywhere
+    bool allow_empty = false;  ///< files of poses may contain no pose; set by --allow-empty
 };
 
 /// Headings of --help, below a command's most common options.
@@ -41,7 +43,7 @@ double memory_limit(const CommonArgs& args);
 /// Adds --threads, --quiet, --summary and --max-memory.
 void add_common(CLI::App& command, CommonArgs& args);
 
-/// Adds --trusted and --confine, for commands that read scenes or robots.
+/// Adds --trusted and --confine, for commands that read scenes or robots. Uses CommonArgs::confines_usually.
 void add_trusted(CLI::App& command, CommonArgs& args);
 
 /// Adds --allow-empty, for commands that read poses.

@@ -42,7 +42,8 @@ void notice_if_old(const CommonArgs& args, const Map& map)
 
 /// Returns the process that reads this scene or robot; nothing if it is read in this process. The process adds files
 /// outside of its folder to the host's list. Throws ArgumentError for --confine without such a process.
-std::optional<ReaderProcess> reader_for(const CommonArgs& args, const std::string& file)
+std::optional<ReaderProcess> reader_for(const CommonArgs& args, const std::string& file,
+                                        const std::vector<fs::path>& model_paths)
 {
     std::optional<ReaderProcess> reader = args.trusted ? std::nullopt : args.host->reader;
     if (!args.confine.empty() && !reader)
@@ -51,6 +52,7 @@ std::optional<ReaderProcess> reader_for(const CommonArgs& args, const std::strin
             "and use the program in place of the library");
     if (!reader) return reader;
     reader->confine.assign(args.confine.begin(), args.confine.end());
+    if (args.confine.empty() && args.confines_usually) reader->confine = usual_folders(file, model_paths);
     reader->report = [host = args.host, file](const std::vector<fs::path>& files) {
         std::error_code unreachable;
         fs::path folder = fs::weakly_canonical(file, unreachable);
@@ -84,13 +86,13 @@ Session open_session(const QueryArgs& args, Summary& summary)
 
 Robot read_robot(const CommonArgs& args, const std::string& file, const RobotOptions& options)
 {
-    const std::optional<ReaderProcess> reader = reader_for(args, file);
+    const std::optional<ReaderProcess> reader = reader_for(args, file, options.model_paths);
     return reader ? load_robot_apart(file, options, *reader) : load_robot(file, options);
 }
 
 Scene read_scene(const CommonArgs& args, const std::string& file, const SceneOptions& options)
 {
-    const std::optional<ReaderProcess> reader = reader_for(args, file);
+    const std::optional<ReaderProcess> reader = reader_for(args, file, options.model_paths);
     return reader ? load_scene_apart(file, options, *reader) : load_scene(file, options);
 }
 
