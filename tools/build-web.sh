@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Builds the page of spawnfield review: build/web/review.html, from web/. Needs Debian's packages nodejs and npm.
+# Builds the page of spawnfield review: build/web/review.html, from web/. Needs Debian's packages nodejs and npm. The
+# exit status is 77 if they, or npm's registry, are missing.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 for program in node npm; do
   if ! command -v "$program" >/dev/null; then
     echo "build-web.sh: $program is missing; install the packages nodejs and npm" >&2
-    exit 1
+    exit 77
   fi
 done
 
@@ -18,7 +19,7 @@ if ! cmp --silent web/package-lock.json "$installed"; then
   if ! (cd web && npm ci --ignore-scripts) >"$log" 2>&1; then
     tail -n 40 "$log" >&2
     echo "build-web.sh: npm ci failed; the whole log is $log" >&2
-    exit 1
+    exit 77
   fi
   cp web/package-lock.json "$installed"
 fi

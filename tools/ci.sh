@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs the checks of .ci/run from a fresh clone: the format, the layers, the golden digests of debug and clang builds,
-# the tests under the address, undefined behaviour and thread sanitizers, and at last all tests of the release. Each
-# step prints its time. The script stops at the first step that fails and prints the end and the faults of its log. All
-# logs are in build/ci.
+# 20 seconds of fuzzing for each reader, the tests under the address, undefined behaviour and thread sanitizers, and at
+# last all tests of the release. Each step prints its time. The script stops at the first step that fails and prints the
+# end and the faults of its log. All logs are in build/ci.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 mkdir -p build/ci
@@ -44,6 +44,7 @@ step format tools/format.sh --check
 step layers tools/check-layers.py
 step dev golden dev -DCMAKE_CXX_FLAGS_DEBUG=  # without debug information, to save time
 step clang golden clang
+step fuzz tests/fuzz/readers.sh 20  # always the same random numbers
 step asan asan
 step tsan tsan
 # The last step prints its own output, which ends with the summary of ctest.

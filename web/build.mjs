@@ -1,5 +1,6 @@
 // Makes build/web/review.html from src/: one file with all code and style, and with the licences of the libraries.
 import { build } from 'esbuild';
+import { createHash } from 'node:crypto';
 import { mkdirSync, readFileSync, renameSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -50,6 +51,8 @@ const [style] = (await build({ ...common, entryPoints: ['src/review.css'] })).ou
 const code = script.text.replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--').trim();
 const html = readFileSync(join(here, 'src/shell.html'), 'utf8')
   .replace('/*STYLE*/', () => style.text.trim())
+  // No other script may run, also if a name in the page were not escaped.
+  .replace('/*HASH*/', () => `'sha256-${createHash('sha256').update(code).digest('base64')}'`)
   .replace('/*SCRIPT*/', () => code);
 
 const lines = html.split('\n').filter((line) => line === MARK).length;

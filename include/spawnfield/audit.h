@@ -131,8 +131,9 @@ SPAWNFIELD_API void write_audit_json(const AuditReport& report, const std::funct
 /// it.
 SPAWNFIELD_API void write_audit_junit(const AuditReport& report, const std::function<void(std::string_view)>& sink);
 
-/// Writes one HTML file that contains its pictures: a heat map and the islands of each robot. It loads nothing from
-/// elsewhere, and has no scripts. Throws OutputError if the temporary folder cannot be written.
+/// Writes one HTML file that contains its pictures, a heat map and the islands of each robot, and the review page of
+/// each robot, if the library has it. It loads nothing from elsewhere. Throws OutputError if the temporary folder
+/// cannot be written.
 SPAWNFIELD_API void write_audit_html(const AuditReport& report, const std::function<void(std::string_view)>& sink,
                                      int threads = 0);
 

@@ -33,6 +33,8 @@ struct ReviewPairs {
 struct ReviewContents {
     std::string title = {};    ///< empty: the names of the map and the robot
     std::string command = {};  ///< the command line that makes the page
+    /// What the colours of the layer show when the page is opened: verdict, height, island, or a quantity's name.
+    std::string colors = "verdict";
     /// 2D rasters of one stance, one for each yaw. All of their poses are judged again, as Judge::check() or settle()
     /// does, with the heights that the page has: multiples of 1e-6 m. Not in updates.
     std::vector<RasterResult> rasters = {};

@@ -1,9 +1,13 @@
 #include "audit/audit_pictures.h"
 #include "audit/audit_words.h"
 #include "base/base64.h"
+#include "base/csv.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "poses/judged_pose.h"
+#include "review/page_shell.h"
+
+#include <spawnfield/review.h>
 
 #include <algorithm>
 
@@ -15,11 +19,14 @@ using Row = std::vector<std::string>;
 /// Returns a text for HTML: valid UTF-8 on one line, with special characters escaped.
 std::string html(const std::string& text) { return xml_escaped(xml_text(text)); }
 
-const char* const page_head =
-    "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-    // The page has no scripts and loads nothing, also if a name in it were not escaped.
-    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
-    "'unsafe-inline'\">\n"
+/// The report loads nothing, and has no scripts besides that of the review page, also if a name in it were not escaped.
+std::string policy()
+{
+    return has_review_page() ? std::string(page_policy())
+                             : "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
+}
+
+const char* const style =
     "<style>\n"
     "body { font-family: sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #1c1c1c; }\n"
     "table { border-collapse: collapse; margin: 0.5rem 0 1.5rem; }\n"
@@ -27,6 +34,7 @@ const char* const page_head =
     "th { background: #efefef; }\n"
     ".broken { background: #fbe3d6; }\n"
     "img { max-width: 100%; }\n"
+    "iframe { width: 100%; height: 40rem; border: 1px solid #c4c4c4; }\n"
     "</style>\n";
 
 /// Returns a table. Rows of `marked` have the colour of broken rules.
@@ -52,6 +60,30 @@ std::string heading(int level, const std::string& text)
 std::string picture(const std::string& png, const std::string& words)
 {
     return "<p><img alt=\"" + html(words) + "\" src=\"data:image/png;base64," + base64(png) + "\"></p>\n";
+}
+
+/// Returns the review page of a robot in a frame, which a browser reads only when it is shown.
+std::string review_frame(const AuditReport& report, const RobotAudit& robot, int threads)
+{
+    constexpr std::size_t most_triangles = 200000;
+    if (!has_review_page()) return "";
+    ReviewContents contents;
+    contents.rasters = {robot.raster};
+    contents.graph = robot.graph;
+    contents.floors = floors_of(report.map);
+    contents.most_triangles = most_triangles;
+    PoseTable starts{.header = "name", .rows = {}, .poses = {}, .notices = {}};
+    for (const NamedPose& pose : report.poses) {
+        starts.rows.push_back(csv_quoted(pose.name));
+        starts.poses.push_back(pose.pose);
+    }
+    if (!starts.poses.empty()) contents.spawns = {{"start poses", std::move(starts)}};
+    std::string page;
+    write_review(robot.judge, contents, [&](std::string_view piece) { page += piece; }, {.threads = threads});
+    const std::string name = robot_name(robot.judge.robot());
+    return "<details>\n<summary>" + html("The world, and where " + name + " can stand, in 3D") +
+           "</summary>\n<iframe loading=\"lazy\" title=\"" + html("Review of " + name) + "\" srcdoc=\"" +
+           xml_escaped(page) + "\"></iframe>\n</details>\n";
 }
 
 std::string rules_table(const std::vector<RuleResult>& rules)
@@ -119,12 +151,17 @@ std::string robot_part(const AuditReport& report, const RobotAudit& robot, const
 void write_audit_html(const AuditReport& report, const std::function<void(std::string_view)>& sink, int threads)
 {
     const std::string title = "Audit of " + report.map.name;
-    const std::string head = std::string(page_head) + "<title>" + html(title) + "</title>\n</head>\n<body>\n" +
-                             heading(1, title) + "<p>spawnfield " + html(version()) + ", " +
-                             html(counted_things(report.parts.props, "prop")) + "</p>\n";
+    const std::string head =
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
+        "http-equiv=\"Content-Security-Policy\" content=\"" +
+        policy() + "\">\n" + style + "<title>" + html(title) + "</title>\n</head>\n<body>\n" + heading(1, title) +
+        "<p>spawnfield " + html(version()) + ", " + html(counted_things(report.parts.props, "prop")) + "</p>\n";
     sink(head + heading(2, "Rules") + rules_table(report.rules) + heading(2, "Robots") + robots_table(report) +
          heading(2, "Findings") + findings_part(report));
-    for (const RobotAudit& robot : report.robots) sink(robot_part(report, robot, draw_audit(report, robot, threads)));
+    for (const RobotAudit& robot : report.robots) {
+        sink(robot_part(report, robot, draw_audit(report, robot, threads)));
+        sink(review_frame(report, robot, threads));
+    }
     sink("</body>\n</html>\n");
 }
 

@@ -168,6 +168,7 @@ std::string review_pack(const Judge& judge, const ReviewContents& contents, cons
               {"program", "spawnfield " + version()},
               {"title", contents.title.empty() ? judge.map().name + ", " + robot_name(judge.robot()) : contents.title},
               {"command", contents.command},
+              {"colors", contents.colors},
               {"settings", judge_settings_json(judge, is_settled)},
               {"robot", add_robot(pack, judge.robot())}};
     if (!contents.is_update) add_scene(head, pack, judge, contents, options);

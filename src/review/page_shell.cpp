@@ -28,3 +28,17 @@ std::string_view page_shell() { return {}; }
 }  // namespace spawnfield
 
 #endif
+
+namespace spawnfield {
+
+std::string_view page_policy()
+{
+    constexpr std::string_view name = "http-equiv=\"Content-Security-Policy\" content=\"";
+    const std::string_view shell = page_shell();
+    const std::size_t start = shell.find(name);
+    if (start == shell.npos) return {};
+    const std::string_view rest = shell.substr(start + name.size());
+    return rest.substr(0, rest.find('"'));
+}
+
+}  // namespace spawnfield

@@ -8,4 +8,7 @@ namespace spawnfield {
 /// it.
 std::string_view page_shell();
 
+/// Returns the Content-Security-Policy of the page: what a page must allow that contains this one in a frame.
+std::string_view page_policy();
+
 }  // namespace spawnfield

@@ -171,3 +171,34 @@ test('a served page shows another layer after a change, and a stranger is refuse
     server.kill('SIGTERM');
   }
 });
+
+test('heatmap --html shows the layer that was asked for, and the spawns', options, async () => {
+  run('heatmap', 'map', '--robot', husky, '--quantity', 'clearance', '--spawns', 'spawns.csv', '--step', '0.5', '--html',
+      '-o', 'heatmap.html');
+  const shown = await browser.open(readFileSync(join(folder, 'heatmap.html'), 'utf8'));
+  assert.equal(await shown.$eval('#color-by', (choice) => choice.selectedOptions[0].textContent), 'Clearance');
+  assert.ok((await shown.locator('.row').count()) > 1);
+  assert.deepEqual(shown.faults, []);
+  await shown.done();
+});
+
+test('the report of an audit shows the page of each robot when it is opened, and runs no other script', options, async () => {
+  run('audit', join(source, 'maps/training/scene.yaml'), '--resolution', '0.2', '--robot', husky, '--robot',
+  'box:0.5,0.4,0.3', '--step', '0.5', '--html', '-o', 'audit.html');
+  const text = readFileSync(join(folder, 'audit.html'), 'utf8');
+  const report = await browser.open(text.replace('<body>', '<body><script>document.title = "run"</script>'), {
+    failing: true,
+  });
+  assert.notEqual(await report.title(), 'run');
+  assert.equal(report.faults.length, 1, report.faults.join('\n')); // the script above was refused
+  assert.match(report.faults[0], /Content Security Policy/);
+  assert.equal(await report.locator('iframe').count(), 2);
+  await report.locator('summary').nth(1).click();
+  const frame = report.frameLocator('iframe').nth(1);
+  await frame.locator('#loading').waitFor({ state: 'detached' });
+  assert.equal(await frame.locator('#title').textContent(), 'training, box:0.5,0.4,0.3');
+  assert.equal(await frame.locator('#failure').count(), 0);
+  const others = report.faults.slice(1).filter((fault) => !fault.includes('GL Driver Message'));
+  assert.deepEqual(others, []);
+  await report.done();
+});

@@ -9,7 +9,7 @@ if ! browser=$(command -v chromium); then
   echo "run.sh: chromium is missing; install the package chromium" >&2
   exit 77
 fi
-tools/build-web.sh || exit 77
+tools/build-web.sh || { status=$?; exit $((status == 77 ? 77 : 1)); }
 if [[ ${1:---} != --* ]]; then
   SPAWNFIELD_PROGRAM=$(realpath "$1")
   export SPAWNFIELD_PROGRAM

@@ -243,6 +243,8 @@ void add_audit(CLI::App& app, ChosenCommand& chosen)
         .add_option("--format", args->format,
                     "text; json; junit: test cases; or html: one file with pictures (default text)")
         ->check(one_of({"text", "json", "junit", "html"}));
+    command.add_flag_callback(
+        "--html", [args] { args->format = "html"; }, "The same as --format html");
     add_finding_options(command, *args);
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Settled);

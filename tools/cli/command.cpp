@@ -38,7 +38,7 @@ void add_commands(CLI::App& app, const std::string& command_line, ChosenCommand&
         {"raster", [&] { add_raster(app, chosen); }},
         {"search", [&] { add_search(app, chosen); }},
         {"sample", [&] { add_sample(app, chosen); }},
-        {"heatmap", [&] { add_heatmap(app, chosen); }},
+        {"heatmap", [&] { add_heatmap(app, command_line, chosen); }},
         {"review", [&] { add_review(app, command_line, chosen); }},
         {"export", [&] { add_export(app, chosen); }},
         {"audit", [&] { add_audit(app, chosen); }},

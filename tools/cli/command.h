@@ -68,7 +68,7 @@ void add_check(CLI::App& app, ChosenCommand& chosen);
 void add_raster(CLI::App& app, ChosenCommand& chosen);
 void add_search(CLI::App& app, ChosenCommand& chosen);
 void add_sample(CLI::App& app, ChosenCommand& chosen);
-void add_heatmap(CLI::App& app, ChosenCommand& chosen);
+void add_heatmap(CLI::App& app, const std::string& command_line, ChosenCommand& chosen);
 void add_export(CLI::App& app, ChosenCommand& chosen);
 void add_audit(CLI::App& app, ChosenCommand& chosen);
 void add_clean(CLI::App& app, ChosenCommand& chosen);

@@ -8,18 +8,20 @@
 #include "spawn_args.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/output_file.h>
 #include <spawnfield/output_folder.h>
+#include <spawnfield/review.h>
 
 #include <cmath>
 
 namespace spawnfield::cli {
 namespace {
 
-constexpr std::array experiment_files{"experiment.csv", "experiment.md"};
+constexpr std::array experiment_files{"experiment.csv", "experiment.md", "review.html"};
 
 struct ExperimentArgs : RasterArgs {
     DrawArgs draws;
-    bool search = false;
+    bool search = false, html = false;
     long long runs = 1;
     std::string steps, steps_z, out, command_line;
 };
@@ -61,6 +63,10 @@ void check_usage(const ExperimentArgs& args, const CLI::App& command)
 {
     if (args.runs < 1) throw bad_value("--runs", double(args.runs), ">= 1");
     if (args.runs > 1000000) throw bad_value("--runs", double(args.runs), "at most 1000000");
+    if (args.html) {
+        require_review_page();
+        if (args.dims == 3) throw ArgumentError("--html needs --dims 2 or --search: a page shows poses on the ground");
+    }
     if (args.search) {
         refuse(command,
                {"--dims", "--steps", "--steps-z", "--offset", "--layers", "--floor", "--no-height-check", "--snap"},
@@ -146,10 +152,12 @@ private:
                 options.step_z = step_z;
                 options.progress = share_of_runs(whole, out.size(), all);
                 const double start = summary_.elapsed();
-                const RasterResult result = raster(*session_.judge, options);
+                RasterResult result = raster(*session_.judge, options);
                 const double seconds = summary_.elapsed() - start;
                 const std::optional<double> up = options.dims == 3 ? std::optional(result.grid.step_z) : std::nullopt;
                 out.push_back({number, step, up, std::nullopt, result.counts, result.exact_checks, seconds});
+                if (args_.html && (page_.rasters.empty() || step < page_.rasters[0].grid.step))
+                    page_.rasters = {std::move(result)};
             }
         return out;
     }
@@ -166,6 +174,8 @@ private:
             const SpawnList list = search(*session_.judge, options);
             out.push_back({number, {}, {}, options.seed, list.counts, list.exact_checks, summary_.elapsed() - start});
             short_runs_ += list.spawns.size() < options.count;
+            if (args_.html && number == args_.runs)
+                page_.spawns = {{"the last run", parse_poses(spawns_csv(list), "the last run", true)}};
         }
         return out;
     }
@@ -184,10 +194,25 @@ private:
                               std::move(runs)};
         if (args_.search) experiment.seed = search_.seed;
         write_file_atomically(folder.path() / "experiment.csv", experiment_csv(experiment.runs));
+        experiment.has_page = args_.html;
         write_file_atomically(folder.path() / "experiment.md", experiment_markdown(experiment));
+        if (args_.html) write_page(folder.path() / "review.html");
         stop_if_interrupted(args_);
         folder.commit();
         notices(args_, folder.notices());
+    }
+
+    /// Writes the review page with the finest raster, or with the spawns of the last search.
+    void write_page(const std::filesystem::path& file)
+    {
+        page_.command = args_.command_line;
+        page_.floors = floors_of(session_.map);
+        page_.stance = args_.stance();
+        const RunOptions run{.threads = args_.threads, .progress = progress_bar(args_, "review")};
+        OutputFile out(file);
+        write_review(
+            *session_.judge, page_, [&](std::string_view piece) { out.write(piece); }, run);
+        out.commit();
     }
 
     Ending finish()
@@ -214,6 +239,7 @@ private:
     std::vector<std::pair<double, double>> steps_;
     Session session_;
     VerdictCounts counts_;  ///< of all runs
+    ReviewContents page_;   ///< with --html
     std::uint64_t short_runs_ = 0;
 };
 
@@ -233,9 +259,13 @@ void add_experiment(CLI::App& app, const std::string& command_line, ChosenComman
     add_map_and_robot(command, *args);
     command
         .add_option("--out,-o", args->out,
-                    "Folder to write: experiment.csv, experiment.md; an older experiment there is replaced")
+                    "Folder to write: experiment.csv, experiment.md, and with --html review.html; an older experiment "
+                    "there is replaced")
         ->required()
         ->check(not_empty());
+    command.add_flag("--html", args->html,
+                     "Also write a page that shows the world in 3D, as `review` does: with the finest raster, or the "
+                     "spawns of the last search");
     command.add_option("--runs", args->runs, "Number of runs of each step, or of the search (default 1)");
     add_dims(command, *args);
     command.add_option("--steps", args->steps,

@@ -111,6 +111,9 @@ std::string experiment_markdown(const Experiment& experiment)
         text += table_row(same);
         first += same.size();
     }
+    if (experiment.has_page)
+        text += std::string("\n[review.html](review.html) shows the world and the ") +
+                (experiment.seed ? "spawns of the last run" : "finest raster") + ".\n";
     return text;
 }
 

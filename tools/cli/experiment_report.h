@@ -23,6 +23,7 @@ struct Experiment {
     unsigned threads = 1;
     std::optional<std::uint64_t> seed;  ///< of the first search
     std::vector<ExperimentRun> runs;    ///< those of one step after each other
+    bool has_page = false;              ///< there is a review.html beside the report
 };
 
 /// Returns a CSV table with a row for each run: run,step,step_z,poses, the count of each verdict,

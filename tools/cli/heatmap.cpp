@@ -1,29 +1,36 @@
 #include "angle.h"
 #include "area_args.h"
+#include "check_pairs.h"
 #include "command.h"
 #include "ground_args.h"
 #include "heatmap_marks.h"
 #include "messages.h"
 #include "numbers.h"
+#include "output.h"
 #include "picture_args.h"
 #include "place_args.h"
 #include "raster_args.h"
 #include "reach_args.h"
 #include "session.h"
 #include "spelling.h"
+#include "streams.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/headings.h>
 #include <spawnfield/heatmap.h>
 #include <spawnfield/raster_islands.h>
 #include <spawnfield/raster_quantities.h>
+#include <spawnfield/review.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 namespace spawnfield::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct HeatmapArgs : QueryArgs {
     AreaArgs area;
@@ -31,7 +38,7 @@ struct HeatmapArgs : QueryArgs {
     IslandArgs islands;
     PlaceArgs places;
     HeatmapMarkArgs marks;
-    std::string out, format, quantity = "verdict", bounds, yaw;
+    std::string command_line, out, format, quantity = "verdict", bounds, yaw;
     double step = 0;
     int size = 1000;
 };
@@ -146,15 +153,58 @@ void add_islands_to(HeatmapOptions& picture, const HeatmapArgs& args, const Sess
     summary.lap("query");
 }
 
+bool is_page(const HeatmapArgs& args)
+{
+    return args.format == "html" || (args.format.empty() && fs::path(args.out).extension() == ".html");
+}
+
+/// Throws unless a review page can show what is asked for.
+void check_page(const HeatmapArgs& args, const CLI::App& command)
+{
+    require_review_page();
+    const std::vector<std::string> shown{"verdict", "height", "clearance", "head_room", "roughness",
+                                         "view",    "tilt",   "margin",    "island"};
+    if (std::ranges::count(shown, args.quantity) == 0)
+        throw ArgumentError("--quantity " + args.quantity + " is only for pictures, not for a page (--html)");
+    refuse(command, {"--size", "--names", "--fleet", "--paths"}, "is only for pictures, not for a page (--html)");
+    refuse(command, island_option_names, "is only for pictures; a page shows all islands (--html --quantity island)");
+    if (args.quantity != "island" && args.marks.pairs.empty())
+        refuse(command, reach_option_names, "is only for --quantity island and for --pairs");
+}
+
+/// Writes the review page with the layer.
+void write_page(const HeatmapArgs& args, const Session& session, const RasterResult& result,
+                const PlaceMeasures& measures, Summary& summary)
+{
+    ReviewContents contents;
+    contents.command = args.command_line;
+    contents.colors = args.quantity;
+    contents.rasters = {result};
+    contents.quantities = measures.columns;
+    contents.measures = measures;
+    contents.floors = floors_of(session.map);
+    contents.stance = args.stance();
+    if (!args.marks.spawns.empty())
+        contents.spawns = {{input_name(args.marks.spawns), open_poses(args, args.marks.spawns)}};
+    if (!args.marks.pairs.empty())
+        contents.pairs = {{input_name(args.marks.pairs), open_pairs(args, args.marks.pairs)}};
+    if (args.quantity == "island" || !contents.pairs.empty())
+        contents.graph = find_islands(args, args.islands, session, summary, "heatmap", !contents.pairs.empty());
+    const RunOptions run{.threads = args.threads, .progress = progress_bar(args, "review")};
+    write_output(args, args.out, [&](const auto& sink) { write_review(*session.judge, contents, sink, run); });
+}
+
 Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& summary)
 {
-    const PictureFile file = picture_file(args.out, args.format);
+    const bool wants_page = is_page(args);
+    if (wants_page) check_page(args, command);
+    const PictureFile file = wants_page ? PictureFile() : picture_file(args.out, args.format);
     const bool shows_islands = args.quantity == "island", shows_room = args.quantity == "room";
     const IslandChoice asked_islands = island_choice(args, args.islands, command);
     RasterOptions options = raster_options(args, command);
     HeatmapOptions picture{.quantity = quantity_of(args.quantity), .pixels = args.size, .threads = args.threads};
     const std::optional<Facing> asked_facing = given_facing(args);
-    const KindRobots kind_robots = read_marks(args, args.marks, picture);
+    const KindRobots kind_robots = wants_page ? KindRobots() : read_marks(args, args.marks, picture);
     if ((is_of_rest(picture.quantity) || shows_room) && !args.is_settled())
         throw ArgumentError("--quantity " + args.quantity +
                             " is about the robot at rest; leave --stance level out, or choose another quantity");
@@ -185,13 +235,20 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
                                                : default_step(session.map, options, 300);
     require_raster_memory(args, session.map, options);
     summary.lap("load");
-    const IslandChoice islands = choice_for(session.map, args, args.islands, command, asked_islands,
-                                            shows_islands || shows_room);
+    const IslandChoice islands = wants_page ? IslandChoice()
+                                            : choice_for(session.map, args, args.islands, command, asked_islands,
+                                                         shows_islands || shows_room);
     const ChosenIslands chosen = choose_islands(args, args.islands, islands, session, summary, "heatmap", shows_room);
     set_room(measures, chosen);
     if (!chosen.why_none.empty()) notice(args, chosen.why_none);
     options.is_reachable = chosen.filter;
     const RasterResult result = shown_raster(session, options, facing.is_any, picture);
+    if (wants_page) {
+        write_page(args, session, result, measures, summary);
+        summary.set_verdicts(result.counts, result.exact_checks);
+        summary.extra.insert(summary.extra.begin(), args.out);
+        return {};
+    }
     if (is_measured(picture.quantity))
         picture.values = raster_quantity(*session.judge, result, measures.columns[0], measures,
                                          {.threads = args.threads, .progress = progress_bar(args, "measuring")});
@@ -212,12 +269,15 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
 
 }  // namespace
 
-void add_heatmap(CLI::App& app, ChosenCommand& chosen)
+void add_heatmap(CLI::App& app, const std::string& command_line, ChosenCommand& chosen)
 {
     auto args = std::make_shared<HeatmapArgs>();
+    args->command_line = command_line;
     CLI::App& command = *app.add_subcommand("heatmap", "Picture of where the robot can stand");
     add_map_and_robot(command, *args);
-    command.add_option("--out,-o", args->out, "Picture to write: .png, .svg or .pdf (- for standard output)")
+    command
+        .add_option("--out,-o", args->out,
+                    "Picture to write: .png, .svg or .pdf; or .html, see --html (- for standard output)")
         ->required()
         ->check(not_empty());
     command
@@ -239,8 +299,11 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
         .add_option("--size", args->size,
                     "Longer side of the picture, pixels (default 1000; texts are legible from about 500 on)")
         ->check(CLI::Range(200, 16000));
-    command.add_option("--format", args->format, "png, svg or pdf (default: the ending of -o, else png)")
-        ->check(one_of({"png", "svg", "pdf"}));
+    command.add_option("--format", args->format, "png, svg, pdf or html (default: the ending of -o, else png)")
+        ->check(one_of({"png", "svg", "pdf", "html"}));
+    command.add_flag_callback(
+        "--html", [args] { args->format = "html"; },
+        "Write a page that shows this layer and the world in 3D, as `review` does, in place of a picture");
     add_ground(
         command, args->ground,
         "all (a column is valid if one of its layers is), top, bottom, or N from the top (0 first; default all)");

@@ -8,9 +8,23 @@ import { pixel, testInterface } from './test_interface.js';
 
 /** Starts the page. `scriptText` is the text of its script, which the worker runs, too. */
 export function startPage(scriptText) {
-  const ready = paintedOnce().then(() => openPage(scriptText));
+  const ready = hasSize()
+    .then(paintedOnce)
+    .then(() => openPage(scriptText));
   window.spawnfield = { ready };
   ready.catch(showFailure);
+}
+
+// In a frame that is not shown yet, the map has no size, which the camera needs.
+function hasSize() {
+  return new Promise((known) => {
+    const observer = new ResizeObserver(([{ contentRect }]) => {
+      if (contentRect.width === 0 || contentRect.height === 0) return;
+      observer.disconnect();
+      known();
+    });
+    observer.observe(byId('map'));
+  });
 }
 
 // The browser shows "Loading" before the page starts to decode.

@@ -9,6 +9,7 @@ const HALF_FIELD = Math.tan((45 * Math.PI) / 360);
 /** Returns the target and the position of a camera that sees all of the world's box as large as possible. */
 function fitted(view, direction, firstDistance) {
   const camera = view.camera.clone();
+  camera.updateProjectionMatrix(); // the size of the map may have changed after the last picture
   const target = view.center.clone();
   let distance = firstDistance;
   const { min, max } = view.box;

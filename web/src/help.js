@@ -25,7 +25,6 @@ export function fillHelp(dialog, json, licences) {
     type: 'button',
     class: 'main',
     text: 'Close',
-    autofocus: true,
     on: { click: () => dialog.close() },
   });
   dialog.replaceChildren(

@@ -15,15 +15,15 @@ const plainSwatch = (color) => verdictSwatch({ color }, null);
 
 /**
  * Returns {node, showLayer(layer, index), colorBy(how), swatch(verdict)} of the legend. `islands()` and `layers()` are
- * those of now. `actions`: toggleVerdict(index, on), colorBy({mode, quantity, range}),
+ * those of now. `colors`: what the layer shows at first, by name. `actions`: toggleVerdict(index, on), colorBy({mode, quantity, range}),
  * setPatterns(on), setLayer(index), setOpacity(share), show(label, on).
  */
-export function createLegend({ verdicts, islands, labels, layers, heights, actions }) {
+export function createLegend({ verdicts, islands, labels, layers, heights, colors, actions }) {
   const patterns = verdictPatterns(verdicts);
   const hidden = new Set();
   let patternsOn = false;
   let layer = null;
-  let way = 'verdict';
+  let way = colors;
 
   const choice = element('select', { 'aria-label': 'What the colours of the layer show', id: 'color-by' });
   const scale = element('div');
@@ -68,6 +68,8 @@ export function createLegend({ verdicts, islands, labels, layers, heights, actio
       ['height', 'Height of the ground'],
     ];
     if (layer?.hasIslands) options.push(['island', 'Island']);
+    const named = layer?.quantities.findIndex((quantity) => quantity.name === way) ?? -1;
+    if (named >= 0) way = String(named);
     if (!options.some(([value]) => value === way)) way = 'verdict';
     choice.replaceChildren(...options.map(([value, text]) => element('option', { value, text })));
     choice.value = way;

@@ -75,6 +75,7 @@ function createSettings(page) {
     heights: map.heights,
     labels: json.world.meshes.map(({ label }) => label),
     layers: () => page.layers,
+    colors: json.colors ?? 'verdict',
     actions: legendActions(page),
   });
   page.floors = createFloors({
