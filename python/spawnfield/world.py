@@ -249,8 +249,10 @@ class World:
             The picture; see docs/pictures.md.
         """
         inputs: dict[str, Any] = {}
+        ending = Path(out or "").suffix.lower().lstrip(".")
+        if format == "html" or ending == "html" or options.get("html"):
+            raise ArgumentError("a heat map is a picture here: png, svg or pdf; World.review() returns a page")
         if format is None:
-            ending = Path(out or "").suffix.lower().lstrip(".")
             format = ending if ending in ("svg", "pdf") else "png"
         if options.get("spawns") is not None:
             options["spawns"] = poses_word(options["spawns"], inputs, has_text=False)

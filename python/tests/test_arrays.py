@@ -252,7 +252,7 @@ def test_review_is_a_page_that_a_notebook_frames(world, robot, tmp_path):
     spawns = world.sample(robot, 3, seed=1)
     try:
         page = world.review(robot, raster=1, spawns=spawns, out=tmp_path / "review.html")
-    except sf.SpawnfieldError as error:
+    except RuntimeError as error:
         assert "without the review page" in str(error)
         pytest.skip(str(error))
     assert page.html.lower().startswith("<!doctype html>")
@@ -271,6 +271,9 @@ def test_picture(world, robot, tmp_path):
     assert (tmp_path / "map.png").read_bytes() == picture.data
     svg = world.heatmap(robot, size=400, format="svg")
     assert svg._repr_png_() is None and svg._repr_svg_().lstrip().startswith("<")
+    for options in ({"format": "html"}, {"html": True}, {"out": tmp_path / "map.html"}):
+        with pytest.raises(sf.ArgumentError, match="World.review"):
+            world.heatmap(robot, **options)
 
 
 def test_picture_on_desktop(monkeypatch, tmp_path):
