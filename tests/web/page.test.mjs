@@ -266,6 +266,19 @@ test('marks are saved as CSV that spawnfield reads', async () => {
   await page.click('#tab-spawns');
 });
 
+test('a pose has one mark, which its answer shows; the same button takes it away', async () => {
+  await page.click('[data-spawn="4"]');
+  assert.equal(await page.getAttribute('[data-mark=bad]', 'aria-pressed'), 'true');
+  assert.equal(await page.inputValue('#note'), 'too near, "really"');
+  assert.equal(await page.textContent('#tab-marks'), 'Marks (2)');
+  await page.click('[data-mark=good]');
+  assert.equal(await page.getAttribute('[data-mark=bad]', 'aria-pressed'), 'false');
+  assert.equal(await page.textContent('#tab-marks'), 'Marks (2)');
+  await page.click('[data-mark=good]');
+  assert.equal(await page.getAttribute('[data-mark=good]', 'aria-pressed'), 'false');
+  assert.equal(await page.textContent('#tab-marks'), 'Marks (1)');
+});
+
 test('light and dark are switched, on the map, too', async () => {
   const corner = () => page.evaluate(() => window.spawnfield.pixelAt(3, 300));
   await page.keyboard.press('Escape');

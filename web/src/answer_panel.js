@@ -1,11 +1,12 @@
 // The panel that answers why: verdict, reason, what was hit, and the numbers of the pose.
 import { copyButton, element } from './dom.js';
-import { answerRow, CSV_COLUMNS } from './answers.js';
+import { answerRow, CSV_COLUMNS, withoutVerdict } from './answers.js';
 import { withUnit } from './numbers.js';
+import { TERMS } from './terms.js';
 
 /**
  * Returns {node, show(answer), showProgram(answer of the program), clear(message)}. `actions`: swatch(verdict),
- * showPart(part), fly(answer), mark(answer, "good" or "bad", note), close().
+ * showPart(part), fly(answer), markOf(answer), mark(answer, "good", "bad" or null, note), close().
  */
 export function createAnswerPanel(actions) {
   const node = element('section', { id: 'answer', class: 'block', 'aria-live': 'polite', 'aria-label': 'Answer' });
@@ -20,20 +21,38 @@ export function createAnswerPanel(actions) {
 
   function show(answer) {
     const note = element('input', { type: 'text', placeholder: 'Note', 'aria-label': 'Note for the mark', id: 'note' });
-    const mark = (text, kind) =>
+    const markButtons = [
+      ['Good', 'good'],
+      ['Bad', 'bad'],
+    ].map(([text, kind]) =>
       element('button', {
         type: 'button',
         text,
+        title: `Mark this pose as ${kind}; once more takes the mark away`,
         'data-mark': kind,
         on: {
           click: () => {
-            actions.mark(answer, kind, note.value);
-            note.value = '';
+            const isMarked = actions.markOf(answer)?.mark === kind;
+            actions.mark(answer, isMarked ? null : kind, note.value);
+            showMark();
           },
         },
-      });
+      }),
+    );
+    const showMark = () => {
+      const marked = actions.markOf(answer);
+      for (const button of markButtons)
+        button.setAttribute('aria-pressed', String(button.dataset.mark === marked?.mark));
+      note.value = marked?.note ?? '';
+    };
+    note.addEventListener('change', () => {
+      const marked = actions.markOf(answer);
+      if (marked) actions.mark(answer, marked.mark, note.value);
+    });
+    showMark();
     program.replaceChildren();
-    const { reason, hit, name, kind } = answer;
+    const { hit, name, kind } = answer;
+    const reason = withoutVerdict(answer.reason, answer.verdictName);
     node.replaceChildren(
       ...[
         element(
@@ -83,7 +102,7 @@ export function createAnswerPanel(actions) {
           copyRowButton(answer),
           element('button', { type: 'button', text: 'Close', on: { click: actions.close } }),
         ),
-        element('div', { class: 'note' }, note, mark('Good', 'good'), mark('Bad', 'bad')),
+        element('div', { class: 'note' }, note, ...markButtons),
         details(answer),
         program,
       ].filter(Boolean),
@@ -142,7 +161,10 @@ function facts({ pose, ground, quantities, island, islandKnown, kind, contacts }
   return element(
     'dl',
     { class: 'facts' },
-    ...lines.flatMap(([name, value]) => [element('dt', { text: name }), element('dd', { text: value })]),
+    ...lines.flatMap(([name, value]) => [
+      element('dt', { text: name, title: TERMS[name] ?? '' }),
+      element('dd', { text: value }),
+    ]),
   );
 }
 

@@ -78,6 +78,12 @@ export function spawnName(list, index) {
   return (column >= 0 && list.rows?.[index]?.[column]) || `pose ${index + 1}`;
 }
 
+/** Returns a reason without the name of the verdict, with which it begins. */
+export function withoutVerdict(reason, verdict) {
+  if (reason === verdict) return '';
+  return reason.startsWith(`${verdict}: `) ? reason.slice(verdict.length + 2) : reason;
+}
+
 /** Returns an answer as a row of CSV with CSV_COLUMNS. */
 export function answerRow({ pose, verdictName, ground, hit }) {
   return row([...pose, verdictName, ground, hit?.name ?? '']);

@@ -28,6 +28,10 @@ export function createToolbar(actions) {
       press(isometric);
       actions.isometric();
     },
+    /** The map was turned, so the view is none of these any more. */
+    turned() {
+      isometric.setAttribute('aria-pressed', 'false');
+    },
     setMeasuring(on) {
       measure.setAttribute('aria-pressed', String(on));
     },

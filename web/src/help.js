@@ -2,6 +2,7 @@
 import { copyButton, element } from './dom.js';
 import { verdictSwatch } from './legend.js';
 import { verdictPatterns } from './palette.js';
+import { TERMS } from './terms.js';
 
 const KEYS = [
   ['Arrows or W A S D', 'move the map'],
@@ -52,6 +53,12 @@ export function fillHelp(dialog, json, licences) {
             element('td', {}, verdictSwatch(verdict, patterns[index]), ` ${verdict.name.replace(/_/g, ' ')}`),
             element('td', { text: verdict.words }),
           ),
+        ),
+      ),
+      element('h3', { text: 'Numbers of the robot' }),
+      table(
+        Object.entries(TERMS).map(([name, means]) =>
+          element('tr', {}, element('td', { text: name.replace(/_/g, ' ') }), element('td', { text: means })),
         ),
       ),
       element('h3', { text: 'This page' }),

@@ -5,6 +5,10 @@ const STEP = 0.1; // share of the view
 const TURN = 0.15; // rad
 
 export function listenToKeys({ cameraViews, floors, toolbar, measure, fly, enter, escape, help }) {
+  const turn = (around, up) => {
+    cameraViews.turn(around, up);
+    toolbar.turned();
+  };
   const moves = {
     ArrowLeft: [-1, 0],
     ArrowRight: [1, 0],
@@ -16,8 +20,8 @@ export function listenToKeys({ cameraViews, floors, toolbar, measure, fly, enter
     s: [0, -1],
   };
   const others = {
-    q: () => cameraViews.turn(TURN, 0),
-    e: () => cameraViews.turn(-TURN, 0),
+    q: () => turn(TURN, 0),
+    e: () => turn(-TURN, 0),
     '+': () => cameraViews.zoom(1.25),
     '=': () => cameraViews.zoom(1.25),
     '-': () => cameraViews.zoom(0.8),
@@ -44,7 +48,7 @@ export function listenToKeys({ cameraViews, floors, toolbar, measure, fly, enter
       enter();
     } else if (moves[key]) {
       const [right, ahead] = moves[key];
-      if (event.shiftKey) cameraViews.turn(-right * TURN, ahead * TURN);
+      if (event.shiftKey) turn(-right * TURN, ahead * TURN);
       else cameraViews.pan(right * STEP, ahead * STEP);
     } else if (/^[1-9]$/.test(key)) {
       floors.showFloor(Number(key) - 1);

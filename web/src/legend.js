@@ -28,6 +28,7 @@ export function createLegend({ verdicts, islands, labels, layers, heights, color
   const choice = element('select', { 'aria-label': 'What the colours of the layer show', id: 'color-by' });
   const scale = element('div');
   const list = element('div', { id: 'legend', role: 'group', 'aria-label': 'Verdicts' });
+  const about = element('p', { class: 'quiet', id: 'about-layer' });
   const heading = element(
     'label',
     { class: 'control' },
@@ -125,6 +126,7 @@ export function createLegend({ verdicts, islands, labels, layers, heights, color
       'section',
       { class: 'block' },
       element('h2', { text: 'Where the robot can stand' }),
+      about,
       list,
       element(
         'label',
@@ -150,11 +152,14 @@ export function createLegend({ verdicts, islands, labels, layers, heights, color
     hidden,
     showLayer(next, index) {
       layer = next;
+      const degrees = next && `${rounded((next.yaw * 180) / Math.PI, 1)}°`;
+      about.textContent = next
+        ? `A colour is for the robot's origin at this place, at heading ${degrees}. Robots reach into other colours.`
+        : '';
       heading.hidden = layers().length < 2;
       headingSlider.max = layers().length - 1;
       headingSlider.value = index;
-      if (next)
-        heading.querySelector('output').textContent = `${rounded((next.yaw * 180) / Math.PI, 1)}° (${next.name})`;
+      if (next) heading.querySelector('output').textContent = `${degrees} (${next.name})`;
       headingSlider.setAttribute('aria-valuetext', next?.name ?? '');
       fillChoice();
       fillList();
@@ -182,7 +187,7 @@ function ramp([low, high], unit) {
     'aria-label': `Scale from ${withUnit(low, unit)} to ${withUnit(high, unit)}`,
   });
   bar.style.background = `linear-gradient(to right, ${stops.join(', ')})`;
-  const ticks = [0, 0.25, 0.5, 0.75, 1].map((share) =>
+  const ticks = [0, 0.5, 1].map((share) =>
     element('span', { text: withUnit(Number((low + share * (high - low)).toPrecision(3)), unit) }),
   );
   return [bar, element('div', { class: 'ticks' }, ...ticks)];

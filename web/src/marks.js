@@ -12,7 +12,7 @@ export function marksCsv(marks) {
   );
 }
 
-/** Returns {node, marks, add(mark)}. `actions`: changed(marks), fly(mark), fileName(). */
+/** Returns {node, marks, of(pose), add(mark), remove(pose)}. `actions`: changed(marks), fly(mark), fileName(). */
 export function createMarks(actions) {
   const marks = [];
   let saved = true;
@@ -58,7 +58,7 @@ export function createMarks(actions) {
     empty.hidden = marks.length > 0;
     table.hidden = save.hidden = marks.length === 0;
     rows.replaceChildren(
-      ...marks.map((mark, at) =>
+      ...marks.map((mark) =>
         element(
           'tr',
           {},
@@ -72,12 +72,7 @@ export function createMarks(actions) {
             element('button', {
               type: 'button',
               text: 'Delete',
-              on: {
-                click: () => {
-                  marks.splice(at, 1);
-                  changed();
-                },
-              },
+              on: { click: () => remove(mark.pose) },
             }),
           ),
         ),
@@ -91,13 +86,26 @@ export function createMarks(actions) {
     actions.changed(marks);
   }
 
+  const indexOf = (pose) => marks.findIndex((mark) => mark.pose.every((value, at) => value === pose[at]));
+
+  function remove(pose) {
+    marks.splice(indexOf(pose), 1);
+    changed();
+  }
+
   fill();
   return {
     node,
     marks,
+    /** Returns the mark of a pose, or undefined. */
+    of: (pose) => marks[indexOf(pose)],
+    /** A pose has one mark: the last one. */
     add(mark) {
-      marks.push({ ...mark, name: mark.name || `mark ${marks.length + 1}` });
+      const before = indexOf(mark.pose);
+      const name = mark.name || marks[before]?.name || `mark ${marks.length + 1}`;
+      marks.splice(before < 0 ? marks.length : before, before < 0 ? 0 : 1, { ...mark, name });
       changed();
     },
+    remove,
   };
 }

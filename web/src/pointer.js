@@ -36,13 +36,13 @@ export function listenToPointer(canvas, { click, doubleClick, hover }) {
   });
 }
 
-/** Shows the name of a part at a pixel, and its place; null for none. */
-export function showUnderPointer(found, name, x, y) {
+/** Shows words about what is at a pixel, and its place; null for none. */
+export function showUnderPointer(found, words, x, y) {
   const tooltip = byId('tooltip');
   byId('under-pointer').textContent = found ? found.place.map((value) => value.toFixed(2)).join(', ') : '';
-  tooltip.hidden = !found || !name;
+  tooltip.hidden = !found || !words;
   if (tooltip.hidden) return;
-  tooltip.textContent = visibleText(`${name} (${found.label})`);
+  tooltip.textContent = visibleText(words);
   const map = byId('map');
   tooltip.style.left = `${Math.min(x + 14, map.clientWidth - tooltip.offsetWidth - 6)}px`;
   tooltip.style.top = `${Math.min(y + 16, map.clientHeight - tooltip.offsetHeight - 6)}px`;

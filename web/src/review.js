@@ -2,7 +2,7 @@
 import licences from 'licences';
 import { byId, element, notice } from './dom.js';
 import { nearestPose, readLayer } from './layer_data.js';
-import { layerAnswer, spawnAnswer } from './answers.js';
+import { layerAnswer, spawnAnswer, spawnName } from './answers.js';
 import { createOverlay } from './overlay.js';
 import { createLegend } from './legend.js';
 import { createFloors } from './floors.js';
@@ -29,6 +29,8 @@ import {
   spawnAt,
   UNCUT,
 } from './map_objects.js';
+
+const MANY_SPAWNS = 5000; // the pointer does not look for one of so many at each move
 
 /** Returns the page of a pack with all of its panels; `map` is that of map_objects.js. */
 export function createReview(pack, map) {
@@ -153,9 +155,11 @@ function createLists(page) {
     showPart: (part) => showPart(map, part) || notice('This part has no triangles in the simplified world.'),
     fly: ({ pose }) => flyToPose(map, pose),
     close: () => select(page, null),
+    markOf: ({ pose }) => page.marks.of(pose),
     mark({ pose, name }, mark, note) {
-      page.marks.add({ pose, name, mark, note });
-      notice(`Marked as ${mark}. The tab Marks has all marks.`);
+      if (mark) page.marks.add({ pose, name, mark, note });
+      else page.marks.remove(pose);
+      notice(mark ? `Marked as ${mark}. The tab Marks has all marks.` : 'The mark is taken away.');
     },
   });
   page.spawnList = createSpawnList(json.verdicts, {
@@ -169,6 +173,7 @@ function createLists(page) {
     changed(marks) {
       map.marks = marks;
       drawMarkers(map);
+      byId('tab-marks').textContent = marks.length > 0 ? `Marks (${marks.length})` : 'Marks';
     },
     fly: ({ pose }) => flyToPose(map, pose),
     fileName: () => 'marks.csv',
@@ -328,6 +333,14 @@ export async function pick(page, x, y) {
   return page.answer;
 }
 
+// The name and the verdict of the spawn at a CSS pixel of the map, if there is one.
+function spawnWords({ json, map, spawns }, x, y) {
+  const spawn = map.spawns.length < MANY_SPAWNS ? spawnAt(map, x, y) : null;
+  if (!spawn) return null;
+  const list = spawns[spawn.list];
+  return `${spawnName(list, spawn.index)}: ${json.verdicts[list.verdicts[spawn.index]].name.replace(/_/g, ' ')}`;
+}
+
 // A click answers, unless a tool waits for places.
 async function click(page, x, y) {
   const { map, measure, regions } = page;
@@ -351,8 +364,17 @@ function listen(page) {
     hover(x, y) {
       if (!map.picking.isReady()) return;
       const found = placeAt(map, x, y);
-      showUnderPointer(found, json.parts[found?.part]?.name, x, y);
+      const part = json.parts[found?.part]?.name;
+      showUnderPointer(found, spawnWords(page, x, y) ?? (part && `${part} (${found.label})`), x, y);
     },
+  });
+  map.view.controls.addEventListener('start', () => {
+    const before = map.view.controls.getAzimuthalAngle();
+    const after = () => map.view.controls.getAzimuthalAngle() !== before && toolbar.turned();
+    map.view.controls.addEventListener('end', function ended() {
+      map.view.controls.removeEventListener('end', ended);
+      after();
+    });
   });
   listenToKeys({
     cameraViews: map.cameraViews,

@@ -1,6 +1,7 @@
 // What the map shows of the selected answer: the robot at its pose, a ring, contacts and support polygon.
+import { Vector3 } from 'three';
 import { createLines, discard } from './lines.js';
-import { createMarkers, createRobots, MARKER } from './robot_shapes.js';
+import { createMarkers, createRobots, MARKER, poseMatrix } from './robot_shapes.js';
 
 const SUPPORT_COLOR = '#d81b60';
 
@@ -19,6 +20,11 @@ export function convexHull(places) {
   return sorted.length < 3 ? sorted : [...half(sorted), ...half(sorted.reverse())];
 }
 
+function boxOf(geometry) {
+  if (!geometry.boundingBox) geometry.computeBoundingBox();
+  return geometry.boundingBox;
+}
+
 /** Returns show(answer or null, withRobot), which replaces what was shown before. `robot()` is the geometry of now. */
 export function createSelection(view, robot, shared, origin) {
   let objects = [];
@@ -31,11 +37,34 @@ export function createSelection(view, robot, shared, origin) {
       objects.push(createMarkers([{ place, verdict: answer.verdict, shape: MARKER.ring }], shared, origin));
       objects[0].material.depthTest = false;
       if (withRobot) objects.push(createRobots(robot(), [answer], shared, origin));
+      objects.push(outline(answer.pose));
       if (answer.contacts.length > 0) objects.push(contactLines(answer.contacts));
       view.scene.add(...objects);
     }
     view.requestRender();
   };
+
+  // The robot's box, seen through all else, with an arrow to where it looks.
+  function outline(pose) {
+    const matrix = poseMatrix(pose, [0, 0, 0]);
+    const { min, max } = boxOf(robot());
+    const at = (x, y, z) => new Vector3(x, y, z).applyMatrix4(matrix).toArray();
+    const ring = (z) => [at(min.x, min.y, z), at(max.x, min.y, z), at(max.x, max.y, z), at(min.x, max.y, z)];
+    const [low, high] = [ring(min.z), ring(max.z)];
+    const [middle, tip] = [(min.y + max.y) / 2, max.x + 0.35 * (max.x - min.x)];
+    const wing = 0.15 * (max.y - min.y);
+    const back = tip - 0.12 * (max.x - min.x);
+    const lines = [low, high].map((places) => ({ places, closed: true }));
+    low.forEach((place, k) => lines.push({ places: [place, high[k]] }));
+    lines.push({ places: [at((min.x + max.x) / 2, middle, max.z), at(tip, middle, max.z)] });
+    lines.push({ places: [at(back, middle - wing, max.z), at(tip, middle, max.z), at(back, middle + wing, max.z)] });
+    const color = '#111111';
+    return createLines(
+      lines.map((line) => ({ ...line, color })),
+      origin,
+      { width: 1.5, onTop: true },
+    );
+  }
 
   function contactLines(contacts) {
     const arm = Math.max(robot().boundingSphere.radius * 0.06, 0.01);

@@ -1,6 +1,6 @@
 // The lists of spawns and pairs: sorted, filtered, and flown to with a click.
 import { element } from './dom.js';
-import { spawnName } from './answers.js';
+import { spawnName, withoutVerdict } from './answers.js';
 import { grouped, withUnit } from './numbers.js';
 
 const SHOWN_AT_ONCE = 200;
@@ -122,7 +122,8 @@ export function createSpawnList(verdicts, actions) {
 
   function spawnRow(list, index) {
     const verdict = verdicts[list.verdicts[index]];
-    const why = list.reasons?.[index] || (isValid(list.verdicts[index]) ? '' : (verdict?.words ?? ''));
+    const reason = withoutVerdict(list.reasons?.[index] ?? '', verdict?.name ?? '');
+    const why = reason || (isValid(list.verdicts[index]) ? '' : (verdict?.words ?? ''));
     const numbers = { clearance: [list.clearance, 'm'], margin: [list.margin, 'm'], tilt: [list.tilt, 'rad'] };
     const [values, unit] = numbers[order.value] ?? [];
     const side = values ? withUnit(values[index], unit) : (verdict?.name ?? '').replace(/_/g, ' ');
