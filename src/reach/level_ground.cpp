@@ -254,8 +254,11 @@ bool LevelGround::set_layer(double height)
     bool is_on_ground = false;
     std::size_t others = 0;
     for (const Solid& solid : solids_) {
-        if (solid.high < height_ - flatness_) below = std::max(below, solid.high);
-        if (solid.high < height_ - flatness_ || solid.low > top) continue;
+        if (solid.high < height_ - flatness_) {
+            below = std::max(below, solid.high);
+            continue;
+        }
+        if (solid.low > top) continue;
         if (const double uneven = unevenness_of(solid); uneven <= flatness_) {
             ground_.push_back(&solid);
             unevenness_ = std::max(unevenness_, uneven);
@@ -350,16 +353,15 @@ bool LevelGround::tips(const Turned& robot) const
 {
     const double least = *shared_.options.stand.min_stability - 2 * end_slack;
     return std::any_of(ends_.begin(), ends_.end(), [&](const Outline& end) {
-        const double margin = edge_normal(end[0], end[1]).normalized().dot(end[0] - robot.mass);
-        return margin < least && is_last(end);
+        const Vec2 outward = edge_normal(end[0], end[1]).normalized();
+        return outward.dot(end[0] - robot.mass) < least && is_all_ground_before(end[0], outward);
     });
 }
 
-/// Returns whether all ground is on the near side of the line through an end.
-bool LevelGround::is_last(const Outline& end) const
+/// Returns whether all ground is on the near side of the line through a point of an end, at right angles to `outward`.
+bool LevelGround::is_all_ground_before(const Vec2& point, const Vec2& outward) const
 {
-    const Vec2 outward = edge_normal(end[0], end[1]).normalized();
-    const auto is_near = [&](const Vec2& corner) { return outward.dot(corner - end[0]) <= end_slack; };
+    const auto is_near = [&](const Vec2& corner) { return outward.dot(corner - point) <= end_slack; };
     return std::all_of(ground_.begin(), ground_.end(), [&](const Solid* const solid) {
         return std::all_of(solid->outline.span().begin(), solid->outline.span().end(), is_near);
     });

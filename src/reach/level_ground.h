@@ -64,7 +64,7 @@ public:
     bool stands(double yaw) const { return has_nothing_near() || stands(turned(yaw)); }
     /// The same at a heading of the drivable graph.
     bool stands_at(int heading) const { return has_nothing_near() || stands(at_headings_[std::size_t(heading)]); }
-    /// Returns whether the robot stands at no place of the layer at this heading. False: not proven.
+    /// Returns whether the robot does not stand there at this heading, because it tips over. False: not proven.
     bool tips_at(int heading) const { return can_tip_ && tips(at_headings_[std::size_t(heading)]); }
     /// Returns the height of its origin, m.
     double z() const { return height_ - lowest_; }
@@ -99,7 +99,7 @@ private:
     bool stands(const Turned& robot) const;
     bool stands_at_end(const Turned& robot) const;
     bool tips(const Turned& robot) const;
-    bool is_last(const Outline& end) const;
+    bool is_all_ground_before(const Vec2& point, const Vec2& outward) const;
     Solid triangle(const std::array<Vec3, 3>& corners, bool is_terrain) const;
     Solid primitive(const Shape& shape, bool is_terrain) const;
     double largest_flatness(double margin) const;

@@ -101,18 +101,26 @@ struct LayerColumns {
     VerdictCounts counts;
 };
 
+/// Returns whether one of the poses above a pose in its column has a property: is_it(index of the pose).
+template <class IsIt>
+bool is_any_above(const RasterResult& raster, std::size_t pose, const IsIt& is_it)
+{
+    const RasterPose& at = raster.poses[pose];
+    for (std::size_t other = pose; other-- > 0;) {  // a column's poses are listed from the top down
+        if (raster.poses[other].x != at.x || raster.poses[other].y != at.y) return false;
+        if (is_it(other)) return true;
+    }
+    return false;
+}
+
 /// Returns whether a pose of a raster, for a layer of a column, comes to rest on a higher layer (at `ground`) that has
 /// a pose of its own in the raster. Then this place is that of the other pose.
 bool is_other_place(const RasterResult& raster, std::size_t pose, double ground)
 {
     constexpr double least = 1e-6;  // m
     if (raster.rests.empty() || !(ground > raster.rests[pose].layer_height + least)) return false;
-    const RasterPose& at = raster.poses[pose];
-    for (std::size_t other = pose; other-- > 0;) {  // a column's poses are listed from the top down
-        if (raster.poses[other].x != at.x || raster.poses[other].y != at.y) return false;
-        if (std::abs(raster.rests[other].layer_height - ground) <= least) return true;
-    }
-    return false;
+    return is_any_above(
+        raster, pose, [&](std::size_t other) { return std::abs(raster.rests[other].layer_height - ground) <= least; });
 }
 
 std::uint32_t cell_of(const RasterGrid& grid, const RasterPose& pose)
@@ -189,13 +197,8 @@ LayerColumns raster_columns(const RasterResult& raster, const HeightScale& heigh
 {
     // The height of a settled pose that stands on a higher layer is that of the pose of that layer.
     const auto is_same_place = [&](std::size_t pose) {
-        const RasterPose& at = raster.poses[pose];
-        for (std::size_t other = pose; other-- > 0;) {
-            const RasterPose& above = raster.poses[other];
-            if (above.x != at.x || above.y != at.y) return false;
-            if (above.z == at.z) return true;
-        }
-        return false;
+        return is_any_above(raster, pose,
+                            [&](std::size_t other) { return raster.poses[other].z == raster.poses[pose].z; });
     };
     LayerColumns out;
     for (std::size_t pose = 0; pose < raster.poses.size(); ++pose)

@@ -21,9 +21,8 @@ struct CommonArgs {
     std::string max_memory;            ///< 8GB; empty: 80 % of what is available
     bool trusted = false;              ///< read scenes and robots in this process; set by --trusted
     std::vector<std::string> confine;  ///< folders to which --confine restricts files; empty: see confines_usually
-    bool confines_usually =
-        false;                 ///< without --confine, files are restricted to usual_folders(), not allowed anywhere
-    bool allow_empty = false;  ///< files of poses may contain no pose; set by --allow-empty
+    bool confines_usually = false;     ///< without --confine, files are restricted to usual_folders()
+    bool allow_empty = false;          ///< files of poses may contain no pose; set by --allow-empty
 };
 
 /// Headings of --help, below a command's most common options.

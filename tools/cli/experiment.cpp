@@ -193,8 +193,8 @@ private:
                               session_.robot.name, summary_.threads(), {},
                               std::move(runs)};
         if (args_.search) experiment.seed = search_.seed;
-        write_file_atomically(folder.path() / "experiment.csv", experiment_csv(experiment.runs));
         experiment.has_page = args_.html;
+        write_file_atomically(folder.path() / "experiment.csv", experiment_csv(experiment.runs));
         write_file_atomically(folder.path() / "experiment.md", experiment_markdown(experiment));
         if (args_.html) write_page(folder.path() / "review.html");
         stop_if_interrupted(args_);

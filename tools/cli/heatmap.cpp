@@ -243,10 +243,10 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     if (!chosen.why_none.empty()) notice(args, chosen.why_none);
     options.is_reachable = chosen.filter;
     const RasterResult result = shown_raster(session, options, facing.is_any, picture);
+    summary.set_verdicts(result.counts, result.exact_checks);
+    summary.extra.insert(summary.extra.begin(), args.out);
     if (wants_page) {
         write_page(args, session, result, measures, summary);
-        summary.set_verdicts(result.counts, result.exact_checks);
-        summary.extra.insert(summary.extra.begin(), args.out);
         return {};
     }
     if (is_measured(picture.quantity))
@@ -261,9 +261,7 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     picture.robot = &session.robot;
     picture.format = file.format;
     write_heatmap(session.map, terrain, result, picture, file.path);
-    summary.set_verdicts(result.counts, result.exact_checks);
     if (facing.is_any) summary.extra.push_back(headings + " at each pose, each with its own exact checks");
-    summary.extra.insert(summary.extra.begin(), args.out);
     return {};
 }
 
