@@ -368,14 +368,10 @@ function listen(page) {
       showUnderPointer(found, spawnWords(page, x, y) ?? (part && `${part} (${found.label})`), x, y);
     },
   });
-  map.view.controls.addEventListener('start', () => {
-    const before = map.view.controls.getAzimuthalAngle();
-    const after = () => map.view.controls.getAzimuthalAngle() !== before && toolbar.turned();
-    map.view.controls.addEventListener('end', function ended() {
-      map.view.controls.removeEventListener('end', ended);
-      after();
-    });
-  });
+  const { controls } = map.view;
+  let angleBefore = 0;
+  controls.addEventListener('start', () => (angleBefore = controls.getAzimuthalAngle()));
+  controls.addEventListener('end', () => controls.getAzimuthalAngle() !== angleBefore && toolbar.turned());
   listenToKeys({
     cameraViews: map.cameraViews,
     floors: page.floors,

@@ -110,6 +110,7 @@ export function robotGeometry(pack) {
   geometry.setAttribute('position', new BufferAttribute(pack.array(robot.positions), 3));
   geometry.setIndex(new BufferAttribute(pack.array(robot.indices), 1));
   geometry.computeBoundingSphere();
+  geometry.computeBoundingBox();
   return geometry;
 }
 
@@ -126,8 +127,7 @@ export function createRobots(geometry, robots, shared, origin) {
       1,
     ),
   );
-  own.computeBoundingBox();
-  const uniforms = { ...shared, center: { value: own.boundingBox.getCenter(new Vector3()) } };
+  const uniforms = { ...shared, center: { value: geometry.boundingBox.getCenter(new Vector3()) } };
   const material = (settings) =>
     new ShaderMaterial({
       glslVersion: GLSL3,

@@ -20,11 +20,6 @@ export function convexHull(places) {
   return sorted.length < 3 ? sorted : [...half(sorted), ...half(sorted.reverse())];
 }
 
-function boxOf(geometry) {
-  if (!geometry.boundingBox) geometry.computeBoundingBox();
-  return geometry.boundingBox;
-}
-
 /** Returns show(answer or null, withRobot), which replaces what was shown before. `robot()` is the geometry of now. */
 export function createSelection(view, robot, shared, origin) {
   let objects = [];
@@ -47,7 +42,7 @@ export function createSelection(view, robot, shared, origin) {
   // The robot's box, seen through all else, with an arrow to where it looks.
   function outline(pose) {
     const matrix = poseMatrix(pose, [0, 0, 0]);
-    const { min, max } = boxOf(robot());
+    const { min, max } = robot().boundingBox;
     const at = (x, y, z) => new Vector3(x, y, z).applyMatrix4(matrix).toArray();
     const ring = (z) => [at(min.x, min.y, z), at(max.x, min.y, z), at(max.x, max.y, z), at(min.x, max.y, z)];
     const [low, high] = [ring(min.z), ring(max.z)];
