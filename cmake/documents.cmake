@@ -23,10 +23,15 @@ if(SPAWNFIELD_PYTHON3)
   list(TRANSFORM files PREPEND "$<TARGET_LINKER_FILE:" REGEX "^spawnfield$")
   list(TRANSFORM files PREPEND "$<TARGET_FILE:" REGEX "^spawnfield_")
   list(TRANSFORM files APPEND ">")
+  set(page_lock "")
+  if(review_page)
+    set(page_lock ${PROJECT_SOURCE_DIR}/web/package-lock.json)
+  endif()
   add_custom_command(OUTPUT ${sbom}
-    DEPENDS ${binaries} ${PROJECT_SOURCE_DIR}/tools/sbom.py ${PROJECT_BINARY_DIR}/libraries.json
+    DEPENDS ${binaries} ${PROJECT_SOURCE_DIR}/tools/sbom.py ${PROJECT_BINARY_DIR}/libraries.json ${page_lock}
     COMMAND ${SPAWNFIELD_PYTHON3} -B ${PROJECT_SOURCE_DIR}/tools/sbom.py --version ${PROJECT_VERSION}
-      --libraries ${PROJECT_BINARY_DIR}/libraries.json -o ${sbom} ${files} VERBATIM)
+      --libraries ${PROJECT_BINARY_DIR}/libraries.json "$<$<BOOL:${page_lock}>:--page=${page_lock}>" -o ${sbom}
+      ${files} COMMAND_EXPAND_LISTS VERBATIM)
 else()
   message(STATUS "The list of libraries (SBOM) is left out: python3 is not installed")
 endif()

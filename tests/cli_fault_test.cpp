@@ -367,6 +367,13 @@ TEST_CASE("control characters of files reach the terminal as codes, and unreacha
     const ProgramRun run = run_program(folder, "bake a.obj -o map --label none=terrain");
     CHECK_THAT(run.err, Contains("there are \\x1b[31mred, DefaultMaterial"));
     CHECK(run.err.find('\x1b') == std::string::npos);
+    folder.write("names.yaml",
+                 "format: spawnfield-scene/1\nname: \"w\\e[31m\\nfine\"\n"
+                 "parts: [{name: \"a\\e[2J\\nb\", label: terrain, box: [1, 1, 1]}]\n");
+    const std::string text = run_program(folder, "info names.yaml").out;
+    CHECK_THAT(text, Contains("scene w\\x1b[31m\\x0afine\n"));
+    CHECK_THAT(text, Contains("  a\\x1b[2J\\x0ab: box"));
+    CHECK(text.find('\x1b') == std::string::npos);
 
     fs::create_symlink("loop", folder / "loop");
     const ProgramRun loop = run_program(folder, "info loop");

@@ -175,7 +175,14 @@ TEST_CASE("the mesh reader cannot crash the program, fill the memory or run for 
     folder.write("loop.ogex", "A {\n B (x = \"y\") { float { 1 } }\n P");
     const ProgramRun memory = run_program(folder, "bake loop.csm -o map --any-mesh");
     CHECK(memory.status == 4);
-    CHECK_THAT(memory.err, Contains("loop.csm: the mesh reader needs more than 0.9 GB of memory"));
+    CHECK_THAT(memory.err,
+               Contains("loop.csm: the mesh reader needs more than 0.9 GB of memory, the limit for files of "
+                        "this size"));
+    const ProgramRun less = run_program(folder, "info loop.csm --any-mesh --max-memory 300MB");
+    CHECK(less.status == 4);
+    CHECK_THAT(less.err,
+               Contains("loop.csm: the mesh reader needs more than 0.3 GB of memory, the limit that was given "
+                        "(--max-memory)"));
     const ProgramRun time = run_program(folder, "bake loop.ogex -o map --any-mesh");
     CHECK(time.status == 4);
     CHECK_THAT(time.err, Contains("loop.ogex: the mesh reader needs more than 13 s of processor time"));
@@ -273,6 +280,12 @@ TEST_CASE("files outside of the folders of --confine are refused, also by links;
     CHECK(run_program(folder, "info in/w.world --confine in").status == 4);
     CHECK(run_program(folder, "info in/w.world --confine in --confine in2").status == 0);
     CHECK(run_program(folder, "info in/robot.yaml --confine in").status == 4);
+    folder.write("own.yaml", "format: spawnfield-scene/1\nparts: [{name: a, label: terrain, mesh: in/a.obj}]\n");
+    CHECK(run_program(folder, "info own.yaml --confine in").status == 0);  // the file of the command line is allowed
+    folder.write("plane.world",
+                 "<?xml version='1.0'?><sdf version='1.6'><world name='w'><include><uri>model://ground_plane</uri>"
+                 "</include></world></sdf>");
+    CHECK_THAT(run_program(folder, "info plane.world").out, !Contains("outside"));  // it is built in
     CHECK(run_program(folder, "info in/up.yaml --confine in --trusted").status == 2);
 
     CHECK_THAT(run_program(folder, "info in/up.yaml").out,

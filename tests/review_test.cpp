@@ -10,6 +10,7 @@
 
 #include <meshoptimizer.h>
 
+#include <map>
 #include <random>
 
 using namespace spawnfield;
@@ -119,6 +120,37 @@ TEST_CASE("a page has the verdict, the reason and the part of check for each of 
                     REQUIRE(page.grounds[i] == std::numeric_limits<std::int32_t>::min());
             }
         }
+}
+
+TEST_CASE("an update has the verdicts of the page")
+{
+    std::size_t compared = 0, aerial = 0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed)
+        for (const Stance stance : {Stance::Level, Stance::Settled}) {
+            CAPTURE(seed, int(stance));
+            const Judge judge(map_of(random_scene(seed)), random_robot(seed), {.max_height = seed % 2 ? 1.0 : 0.3});
+            ReviewContents contents = contents_of(judge, stance, 0.6);
+            if (stance == Stance::Level)
+                contents.rasters = {raster(judge, {.step = 0.6, .offset = seed % 3 ? 0.1 : 0.5, .yaw = 0.3})};
+            const auto verdicts = [&] {
+                const ReviewPack pack(review_pack(judge, contents));
+                const json& layer = pack.head.at("layers").at(0);
+                const std::vector<std::int64_t> cells = pack.integers(layer.at("cell")),
+                                                heights = pack.integers(layer.at("z")),
+                                                values = pack.integers(layer.at("verdict"));
+                std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> out;
+                for (std::size_t i = 0; i < cells.size(); ++i) out[{cells[i], heights[i]}] = values[i];
+                return out;
+            };
+            const auto page = verdicts();
+            contents.is_update = true;
+            const auto update = verdicts();
+            CHECK(update == page);
+            compared += update.size();
+            for (const auto& [place, verdict] : update) aerial += verdict == int(Verdict::Aerial);
+        }
+    CHECK(compared > 3000);
+    CHECK(aerial > 100);
 }
 
 TEST_CASE("a page has each place of a raster once, with the raster's verdict")

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Writes the software bill of materials of spawnfield: a list of all libraries that it uses, in CycloneDX 1.5 JSON.
 
-    sbom.py --version VERSION --libraries FILE -o OUT BINARY...
+    sbom.py --version VERSION --libraries FILE [--page LOCK] -o OUT BINARY...
 
 BINARY: the program, the library and its modules. What they link, directly or through other libraries, comes from the
 files themselves (objdump, ldd). dpkg says which package each library is from, with its version, and Debian's copyright
 file says the licence. FILE is libraries.json of the build (cmake/libraries.cmake): the libraries that spawnfield uses
-by name, also those that are only headers.
+by name, also those that are only headers. LOCK is web/package-lock.json, if the library contains the review page: the
+JavaScript libraries in that page are from npm.
 
 The same binaries on the same system give the same bytes. There is a time stamp only if SOURCE_DATE_EPOCH is set.
 """
@@ -189,11 +190,24 @@ class Bill:
         if entry not in properties:
             properties.append(entry)
 
+    def add_page(self, lock):
+        """Adds the libraries of the review page. Returns their references."""
+        packages = json.loads(Path(lock).read_text())["packages"]
+        added = set()
+        for name in packages[""]["dependencies"]:
+            package = packages[f"node_modules/{name}"]
+            purl = f"pkg:npm/{quote(name)}@{package['version']}"
+            self.components[purl] = {"type": "library", "bom-ref": purl, "name": name, "version": package["version"],
+                                     "purl": purl, "licenses": [{"license": {"id": package["license"]}}],
+                                     "properties": [{"name": "spawnfield:page", "value": "review"}]}
+            added.add(purl)
+        return added
+
     def depend(self, reference, references):
         self.depends.setdefault(reference, set()).update(set(references) - {reference})
 
 
-def bill_of_materials(version, libraries, binaries):
+def bill_of_materials(version, libraries, binaries, page):
     """Returns the document, without serial number."""
     own = {Path(file).name for file in binaries}
 
@@ -219,6 +233,8 @@ def bill_of_materials(version, libraries, binaries):
         bill.depend("spawnfield", {part})
     # Headers are compiled into the binaries.
     bill.depend("spawnfield", {reference for file, reference in bill.reference.items() if file not in files.values()})
+    if page:
+        bill.depend("spawnfield", bill.add_page(page))
     for component in bill.components.values():
         component["properties"].sort(key=lambda entry: (entry["name"], entry["value"]))
     root = {"type": "application", "bom-ref": "spawnfield", "name": "spawnfield", "version": version,
@@ -249,11 +265,12 @@ def main():
     parser = argparse.ArgumentParser(description="Writes a software bill of materials in CycloneDX 1.5 JSON.")
     parser.add_argument("--version", required=True, help="version of spawnfield")
     parser.add_argument("--libraries", required=True, help="libraries.json of the build")
+    parser.add_argument("--page", help="lock file of the libraries of the review page")
     parser.add_argument("-o", "--out", required=True, help="file to write")
     parser.add_argument("binaries", nargs="+", help="the program, the library and its modules")
     arguments = parser.parse_args()
     libraries = json.loads(Path(arguments.libraries).read_text())
-    bill = stamped(bill_of_materials(arguments.version, libraries, arguments.binaries))
+    bill = stamped(bill_of_materials(arguments.version, libraries, arguments.binaries, arguments.page))
     Path(arguments.out).write_text(json.dumps(bill, indent=2) + "\n")
 
 

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,13 +17,14 @@ namespace spawnfield {
 /// of their own, this ends that process alone, and the caller gets a FileError that names the file.
 ///
 /// The process has limits, which grow with the size of all files that it opens: 900 MB of memory, and 900 MB more for
-/// each MB above 1 MB; and, while one of those libraries reads, 12 s of processor time, and 5 s more for each MB. It is
-/// killed if it waits for 15 s without doing anything, and if the caller's thread ends.
+/// each MB above 1 MB, but at most max_memory; and, while one of those libraries reads, 12 s of processor time, and 5 s
+/// more for each MB. It is killed if it waits for 15 s without doing anything, and if the caller's thread ends.
 struct ReaderProcess {
     /// A program whose main() calls serve_reader() first; `/proc/self/exe` is the calling program itself.
     std::filesystem::path program;
     /// Called ten times per second while the process reads. May throw; this ends the process.
     std::function<void()> wait = {};
+    double max_memory = std::numeric_limits<double>::infinity();  ///< bytes, > 0
     /// Only files in these folders may be read, at any depth, after links are resolved; empty: all files.
     std::vector<std::filesystem::path> confine = {};
     /// Gets the paths of all files that were read, without links, each once. Not called after an error, and for a robot

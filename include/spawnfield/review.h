@@ -46,8 +46,8 @@ struct ReviewContents {
     Stance stance = Stance::Settled;  ///< how the robots of `spawns` stand
     std::vector<ReviewSpawns> spawns = {};
     std::vector<ReviewPairs> pairs = {};  ///< the graph must keep its ways
-    /// Only the layers, spawns and pairs, for a page that is open already. Poses of layers have the verdicts of their
-    /// rasters, without reasons and what they meet.
+    /// Only the layers, spawns and pairs, for a page that is open already. Its poses have the same verdicts, but
+    /// neither reasons nor what they meet.
     bool is_update = false;
     std::string live = {};                 ///< JSON object for the key `live`; empty: the page is not served
     std::size_t most_triangles = 1000000;  ///< a world with more is simplified; > 0

@@ -56,6 +56,12 @@ void ReaderLimits::confine(const std::vector<std::filesystem::path>& folders)
     for (const std::filesystem::path& folder : folders) confined_.push_back(without_links(folder));
 }
 
+void ReaderLimits::limit_memory_to(double bytes)
+{
+    most_memory_ = bytes;
+    limit_memory();
+}
+
 void ReaderLimits::opens(const std::filesystem::path& file, std::uint64_t bytes)
 {
     const std::filesystem::path path = without_links(file);
@@ -96,8 +102,10 @@ void ReaderLimits::ends(bool has_failed)
 
 void ReaderLimits::limit_memory()
 {
-    const double memory = memory_per_megabyte * std::max(1.0, double(bytes_) / megabyte);
+    const double for_files = memory_per_megabyte * std::max(1.0, double(bytes_) / megabyte),
+                 memory = std::min(for_files, most_memory_);
     status_.gigabytes = memory / 1e9;
+    status_.is_given = memory < for_files;
     if (!is_sanitized) limit_resource(RLIMIT_DATA, at_start_ + memory);
 }
 

@@ -3,6 +3,7 @@
 #include "base/input_watch.h"
 #include "base/sanitized.h"
 
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -14,8 +15,9 @@ struct ReaderStatus {
     std::uint64_t answer_bytes = 0;
     double seconds = 0;            ///< limit of processor time, s
     double gigabytes = 0;          ///< limit of memory, GB
+    std::uint64_t is_given = 0;    ///< 1: that limit is ReaderProcess::max_memory, 0: that for files of this size
     char reader[32] = {};          ///< the foreign library that reads, or that failed; empty: none
-    char file[4096 - 3 * 8 - 32];  ///< the file that it reads; ends in 0
+    char file[4096 - 4 * 8 - 32];  ///< the file that it reads; ends in 0
 };
 static_assert(sizeof(ReaderStatus) == 4096);
 
@@ -30,6 +32,8 @@ public:
 
     /// From now on opens() throws FileError for files outside of these folders, after links are resolved.
     void confine(const std::vector<std::filesystem::path>& folders);
+    /// From now on, the process gets at most so much memory, bytes.
+    void limit_memory_to(double bytes);
     /// Returns all files that were opened, without links.
     const std::set<std::filesystem::path>& files() const { return files_; }
 
@@ -45,7 +49,8 @@ private:
     std::set<std::filesystem::path> files_;        ///< without links
     std::vector<std::filesystem::path> confined_;  ///< folders without links; empty: all files are allowed
     std::uint64_t bytes_ = 0;                      ///< of all files
-    bool is_reading_ = false;                      ///< a foreign library reads
+    double most_memory_ = std::numeric_limits<double>::infinity();  ///< bytes
+    bool is_reading_ = false;                                       ///< a foreign library reads
     /// What it has opened since it began.
     std::set<std::filesystem::path> its_files_;
     std::uint64_t its_bytes_ = 0;

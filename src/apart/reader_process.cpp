@@ -154,8 +154,9 @@ std::string reader_name(const ReaderStatus& last) { return last.reader[0] == 0 ?
 {
     if (kind == AnswerKind::OutOfMemory)
         throw FileError(file_name(last, file), "the " + reader_name(last) + " needs more than " +
-                                                   number(last.gigabytes) +
-                                                   " GB of memory, the limit for files of this size" + remedy);
+                                                   number(last.gigabytes) + " GB of memory, the " +
+                                                   (last.is_given != 0 ? "limit that was given (--max-memory)" + damaged
+                                                                       : "limit for files of this size" + remedy));
     std::string text, message;
     answer(text);
     if (kind == AnswerKind::FileError) rethrow_file_error(text);
@@ -173,7 +174,8 @@ Result asked(RequestKind kind, std::string name, Options options, const ReaderPr
     ArchiveWriter out;
     std::vector<fs::path> confine = process.confine;
     std::string own_version = version();
-    out(own_version, kind, name, confine, options);
+    double max_memory = process.max_memory;
+    out(own_version, kind, name, confine, max_memory, options);
     request.write(0, out.take());
     answer.write(0, std::string(sizeof(ReaderStatus), '\0'));
     bool stalled = false;

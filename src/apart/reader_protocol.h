@@ -3,8 +3,9 @@
 #include <cstdint>
 
 // The messages between a program and its reader process. The request is: the version of the program, a RequestKind, the
-// file or robot as text, the folders of --confine, and the options. The answer is an AnswerKind and what belongs to it.
-// Both are bytes of an Archive in memory files that the process inherits; the answer's file begins with a ReaderStatus.
+// file or robot as text, the folders of --confine, the limit of memory, and the options. The answer is an AnswerKind
+// and what belongs to it. Both are bytes of an Archive in memory files that the process inherits; the answer's file
+// begins with a ReaderStatus.
 namespace spawnfield {
 
 /// The only argument with which a program becomes a reader process.

@@ -37,7 +37,9 @@ std::string answer_to(std::string_view request, ReaderLimits& limits)
     if (asked_by != version())
         throw std::runtime_error("the program that reads files has version " + version() + ", the library " + asked_by +
                                  "; install both from the same build");
-    in(kind, name, confine);
+    double max_memory = 0;
+    in(kind, name, confine, max_memory);
+    limits.limit_memory_to(max_memory);
     if (!confine.empty()) {
         confine.push_back(built_in_folder());
         limits.confine(confine);
@@ -54,6 +56,9 @@ std::string answer_to(std::string_view request, ReaderLimits& limits)
         out(robot);
     }
     std::vector<fs::path> files(limits.files().begin(), limits.files().end());
+    std::error_code unreachable;
+    const fs::path own = fs::weakly_canonical(built_in_folder(), unreachable);
+    std::erase_if(files, [&](const fs::path& file) { return is_in_folder(file, own); });
     out(files);
     return out.take();
 }

@@ -180,7 +180,8 @@ Pose PoseRows::pose(std::string_view row, std::uint64_t line, BeyondTurn& beyond
     const RowFields fields(row);
     if (std::count(row.begin(), row.end(), '"') % 2 != 0) fail(line, "has a quote that is not closed");
     if (fields.size() != names_.size())
-        fail(line, "has " + std::to_string(fields.size()) + " fields, the header has " + std::to_string(names_.size()));
+        fail(line, "has " + std::to_string(fields.size()) + (fields.size() == 1 ? " field" : " fields") +
+                       ", the header has " + std::to_string(names_.size()));
     Pose pose;
     for (int axis = 0; axis < 3; ++axis)
         pose.position[axis] = number_in(fields[position_[std::size_t(axis)]], position_names[std::size_t(axis)], line);

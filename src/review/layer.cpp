@@ -1,8 +1,11 @@
 #include "review/layer.h"
 
 #include "base/number.h"
+#include "base/parallel.h"
+#include "column/columns.h"
 #include "review/judged_poses.h"
 #include "review/reason_table.h"
+#include "settle/underside.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/frames.h>
@@ -13,6 +16,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace spawnfield {
 namespace {
@@ -101,26 +105,23 @@ struct LayerColumns {
     VerdictCounts counts;
 };
 
-/// Returns whether one of the poses above a pose in its column has a property: is_it(index of the pose).
-template <class IsIt>
-bool is_any_above(const RasterResult& raster, std::size_t pose, const IsIt& is_it)
-{
-    const RasterPose& at = raster.poses[pose];
-    for (std::size_t other = pose; other-- > 0;) {  // a column's poses are listed from the top down
-        if (raster.poses[other].x != at.x || raster.poses[other].y != at.y) return false;
-        if (is_it(other)) return true;
-    }
-    return false;
-}
-
 /// Returns whether a pose of a raster, for a layer of a column, comes to rest on a higher layer (at `ground`) that has
 /// a pose of its own in the raster. Then this place is that of the other pose.
 bool is_other_place(const RasterResult& raster, std::size_t pose, double ground)
 {
     constexpr double least = 1e-6;  // m
     if (raster.rests.empty() || !(ground > raster.rests[pose].layer_height + least)) return false;
-    return is_any_above(
-        raster, pose, [&](std::size_t other) { return std::abs(raster.rests[other].layer_height - ground) <= least; });
+    const RasterPose& at = raster.poses[pose];
+    for (std::size_t other = pose; other-- > 0;) {  // a column's poses are listed from the top down
+        if (raster.poses[other].x != at.x || raster.poses[other].y != at.y) return false;
+        if (std::abs(raster.rests[other].layer_height - ground) <= least) return true;
+    }
+    return false;
+}
+
+double layer_height_of(const RasterResult& raster, std::size_t pose)
+{
+    return raster.rests.empty() ? raster.poses[pose].z - raster.offset : raster.rests[pose].layer_height;
 }
 
 std::uint32_t cell_of(const RasterGrid& grid, const RasterPose& pose)
@@ -140,8 +141,7 @@ void add_from_raster(LayerColumns& out, const RasterResult& raster, const Height
     out.verdict.push_back(std::uint8_t(at.verdict));
     ++out.counts[at.verdict];
     out.hit.push_back(0);
-    out.ground.push_back(
-        heights.nearest(raster.rests.empty() ? at.z - raster.offset : raster.rests[pose].layer_height));
+    out.ground.push_back(heights.nearest(layer_height_of(raster, pose)));
     if (raster.rests.empty()) return;
     const RasterRest& rest = raster.rests[pose];
     out.roll.push_back(rounded_angle(rest.roll));
@@ -172,37 +172,56 @@ void add_judged(LayerColumns& out, const Judge& judge, const RasterResult& raste
     out.margin.push_back(rest.has_pose ? rest.margin : no_value);
 }
 
-/// Returns the columns of poses that are judged as `check` does: its verdict may differ from that of the raster, which
-/// has no limit of height.
-LayerColumns judged_columns(const Judge& judge, const RasterResult& raster, const HeightScale& heights,
-                            const RunOptions& options)
+/// Returns the poses of a raster whose verdict may not be that of `check`: those that are more than
+/// JudgeOptions::max_height above their layer, that may stand over ground that is higher than their origin, or
+/// (settled) whose place is on other ground than their layer.
+std::vector<std::size_t> poses_to_judge(const Judge& judge, const RasterResult& raster, const HeightScale& heights,
+                                        int threads)
 {
-    const Mat3 rotation = rotation_from_rpy(0, 0, raster.yaw);
-    const auto pose_of = [&](std::size_t i) {
-        const RasterPose& pose = raster.poses[i];
-        return Pose{Vec3(pose.x, pose.y, heights.of(heights.above(pose.z))), rotation};
-    };
-    LayerColumns out;
-    judge_places(judge, raster.stance, raster.poses.size(), pose_of, options,
-                 [&](std::size_t pose, const JudgedPlace& place) {
-                     const std::optional<Ground>& ground = place.judgement.ground;
-                     if (place.settled.has_pose && ground && is_other_place(raster, pose, ground->height)) return;
-                     add_judged(out, judge, raster, heights, pose, place);
-                 });
+    constexpr std::size_t batch = 1024;
+    const bool can_be_over_ground = Underside(judge.robot()).above_origin(rotation_from_rpy(0, 0, raster.yaw)) > 0;
+    const double max_height = judge.options().max_height + touch_tolerance;
+    std::vector<std::uint8_t> is_chosen(raster.poses.size());
+    parallel_for((is_chosen.size() + batch - 1) / batch, threads, {}, [&](std::size_t b) {
+        Column column;
+        for (std::size_t i = b * batch; i < std::min(is_chosen.size(), (b + 1) * batch); ++i) {
+            const RasterPose& pose = raster.poses[i];
+            const double z = heights.of(heights.above(pose.z)), layer = layer_height_of(raster, i);
+            is_chosen[i] = z - layer > max_height || (can_be_over_ground && pose.verdict != Verdict::Valid);
+            if (is_chosen[i] || raster.rests.empty()) continue;
+            read_column(judge.map().geometry, pose.x, pose.y, column);
+            const std::optional<Ground> ground = ground_below(column, z);
+            is_chosen[i] = !ground || ground->height != layer;
+        }
+    });
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < is_chosen.size(); ++i)
+        if (is_chosen[i]) out.push_back(i);
     return out;
 }
 
-/// Returns the columns that a raster itself has.
-LayerColumns raster_columns(const RasterResult& raster, const HeightScale& heights)
+/// Returns the columns of a layer. Poses that are not judged again have the verdict of the raster.
+LayerColumns layer_columns(const Judge& judge, const RasterResult& raster, const HeightScale& heights,
+                           const std::vector<std::size_t>& judged, const RunOptions& options)
 {
-    // The height of a settled pose that stands on a higher layer is that of the pose of that layer.
-    const auto is_same_place = [&](std::size_t pose) {
-        return is_any_above(raster, pose,
-                            [&](std::size_t other) { return raster.poses[other].z == raster.poses[pose].z; });
+    const Mat3 rotation = rotation_from_rpy(0, 0, raster.yaw);
+    const auto pose_of = [&](std::size_t i) {
+        const RasterPose& pose = raster.poses[judged[i]];
+        return Pose{Vec3(pose.x, pose.y, heights.of(heights.above(pose.z))), rotation};
     };
     LayerColumns out;
-    for (std::size_t pose = 0; pose < raster.poses.size(); ++pose)
-        if (!is_same_place(pose)) add_from_raster(out, raster, heights, pose);
+    std::size_t next = 0;
+    const auto add_up_to = [&](std::size_t end) {
+        for (; next < end; ++next) add_from_raster(out, raster, heights, next);
+    };
+    judge_places(judge, raster.stance, judged.size(), pose_of, options, [&](std::size_t i, const JudgedPlace& place) {
+        add_up_to(judged[i]);
+        ++next;
+        const std::optional<Ground>& ground = place.judgement.ground;
+        if (place.settled.has_pose && ground && is_other_place(raster, judged[i], ground->height)) return;
+        add_judged(out, judge, raster, heights, judged[i], place);
+    });
+    add_up_to(raster.poses.size());
     return out;
 }
 
@@ -230,8 +249,16 @@ Json add_layer(PackWriter& pack, const Judge& judge, const RasterResult& raster,
         throw ArgumentError("write_review", "a raster has three dimensions or several headings, needs two and one");
     const bool is_settled = raster.stance == Stance::Settled;
     const HeightScale heights = scale_of(judge.map(), raster);
-    const LayerColumns columns = contents.is_update ? raster_columns(raster, heights)
-                                                    : judged_columns(judge, raster, heights, options);
+    // The page shows the verdicts of `check`. Those of a raster differ where it has no limit of height, or where the
+    // robot's origin is below its layer. Updates have no reasons, so only these poses are judged again for them.
+    std::vector<std::size_t> judged;
+    if (contents.is_update) {
+        judged = poses_to_judge(judge, raster, heights, options.threads);
+    } else {
+        judged.resize(raster.poses.size());
+        std::iota(judged.begin(), judged.end(), std::size_t(0));
+    }
+    const LayerColumns columns = layer_columns(judge, raster, heights, judged, options);
     const RasterGrid& grid = raster.grid;
     Json counts = Json::array();
     for (std::size_t v = 0; v < verdict_count; ++v) counts.push_back(columns.counts[Verdict(v)]);

@@ -117,6 +117,12 @@ def check_bill(bill, root, binaries):
         if component["purl"].startswith("pkg:deb/"):
             known = run("dpkg-query", "--show", "--showformat=${Version}\n", component["name"]).split()
             check(component["version"] in known, f"dpkg has {component['name']} {known}, not {component['version']}")
+    # The review page contains libraries from npm.
+    library = next(file for file in binaries if file.name.startswith("libspawnfield.so"))
+    has_page = b"three-mesh-bvh" in library.read_bytes()
+    of_page = {component["name"] for component in bill["components"] if component["purl"].startswith("pkg:npm/")}
+    wanted = {"three", "three-mesh-bvh", "fflate", "meshoptimizer"} if has_page else set()
+    check(of_page == wanted, f"the list has the JavaScript libraries {of_page}, not {wanted}")
     # --version knows the same libraries, and each of them has a licence.
     printed = run(root / "usr/bin/spawnfield", "--version")
     libraries = re.findall(r"^  (\S+) (\S+)(?: \(package (\S+)\))?$", printed, re.MULTILINE)

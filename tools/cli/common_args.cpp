@@ -40,7 +40,7 @@ void add_trusted(CLI::App& command, CommonArgs& args)
     command
         .add_option("--confine", args.confine,
                     std::string("Refuse scenes and robots that name files outside of this folder, also by links "
-                                "(repeatable; the scene and the robot must lie in one of the folders, too)") +
+                                "(repeatable)") +
                         (args.confines_usually ? ". Default: its own folder, or the one above if that is called "
                                                  "worlds, urdf or the like; --model-path; GZ_SIM_RESOURCE_PATH, "
                                                  "GAZEBO_MODEL_PATH; downloaded models. All files: --confine /"

@@ -3,6 +3,7 @@
 #include "numbers.h"
 #include "output.h"
 #include "picture_args.h"
+#include "printable.h"
 #include "reach_args.h"
 #include "scene_args.h"
 
@@ -363,9 +364,10 @@ std::string name_lines(const Json& parts, const std::string& purpose)
             char heights[80];
             std::snprintf(heights, sizeof heights, ", z %.6g to %.6g m, ", group["z"][0].get<double>(),
                           group["z"][1].get<double>());
-            lines.push_back({triangles, "  " + (is_one ? "" : part["name"].get<std::string>() + ": ") + "node " +
-                                            group["node"].dump() + ", material " + group["material"].dump() + ": " +
-                                            counted(triangles, "triangle") + heights + labels + "\n"});
+            lines.push_back({triangles, "  " + (is_one ? "" : part["name"].get<std::string>() + ": ") + "node \"" +
+                                            group["node"].get<std::string>() + "\", material \"" +
+                                            group["material"].get<std::string>() +
+                                            "\": " + counted(triangles, "triangle") + heights + labels + "\n"});
         }
     if (lines.empty()) return "";
     std::stable_sort(lines.begin(), lines.end(),
@@ -392,6 +394,21 @@ std::string scene_lines(const Json& scene, std::span<const Part> all_parts)
     for (std::size_t i = 0; i < std::min(most_lines, parts.size()); ++i) out += part_line(parts[i]);
     const bool is_map = scene["kind"] == "map";
     return out + more_line(all_parts.size()) + name_lines(parts, is_map ? "rules of place such as --on" : "--label");
+}
+
+/// Escapes control characters in all texts of a value.
+void make_printable(Json& value)
+{
+    if (value.is_string()) value = printable(value.get<std::string>(), false);
+    if (value.is_structured())
+        for (Json& item : value) make_printable(item);
+}
+
+/// The same in what is printed as text.
+void make_printable(Json& out, std::vector<Part>& parts)
+{
+    make_printable(out);
+    for (Part& part : parts) part.name = printable(part.name, false);
 }
 
 /// Returns a heading and the first files that were read from outside of the folder of a scene or a robot.
@@ -605,6 +622,7 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
     if (out["kind"] != "map" && !args.host->outside_files.empty()) out["outside_files"] = args.host->outside_files;
     listen(1);
     summary.lap("load");
+    if (!args.json) make_printable(out, parts);
     const std::string kind = out["kind"];
     const std::string text = args.json       ? out.dump(2) + "\n"
                              : kind == "map" ? map_lines(out, parts)

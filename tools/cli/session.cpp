@@ -51,8 +51,10 @@ std::optional<ReaderProcess> reader_for(const CommonArgs& args, const std::strin
             "--confine needs the process that reads files apart from the program; leave out --trusted, "
             "and use the program in place of the library");
     if (!reader) return reader;
+    reader->max_memory = memory_limit(args);
     reader->confine.assign(args.confine.begin(), args.confine.end());
     if (args.confine.empty() && args.confines_usually) reader->confine = usual_folders(file, model_paths);
+    if (!reader->confine.empty()) reader->confine.push_back(file);  // what the user names is allowed
     reader->report = [host = args.host, file](const std::vector<fs::path>& files) {
         std::error_code unreachable;
         fs::path folder = fs::weakly_canonical(file, unreachable);

@@ -1,5 +1,7 @@
 #include "terminal.h"
 
+#include "printable.h"
+
 #include <spawnfield/error.h>
 
 #include <unistd.h>
@@ -36,25 +38,12 @@ void catch_interrupts()
     }
 }
 
-/// Returns the text as it may go to a terminal. Names in files may contain escape sequences, which could change
-/// colours, the title or earlier lines: control characters become \xNN (ECMA-48: C0, DEL and, in UTF-8, C1). A text
-/// that is too long loses its middle.
-std::string printable(const std::string& text)
+/// Returns a message as it may go to a terminal. A text that is too long loses its middle.
+std::string shown(const std::string& text)
 {
     constexpr std::size_t most = 8000, end = 1000;  // bytes
-    const auto shown = [](const std::string& part) {
-        std::string out;
-        for (std::size_t i = 0; i < part.size(); ++i) {
-            const auto c = static_cast<unsigned char>(part[i]);
-            const bool is_c1 = c == 0xc2 && i + 1 < part.size() && static_cast<unsigned char>(part[i + 1]) < 0xa0;
-            char code[8];
-            std::snprintf(code, sizeof code, "\\x%02x", is_c1 ? static_cast<unsigned char>(part[++i]) : c);
-            out += is_c1 || (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f ? code : std::string(1, char(c));
-        }
-        return out;
-    };
-    if (text.size() <= most) return shown(text);
-    return shown(text.substr(0, most - end)) + " … " + shown(text.substr(text.size() - end));
+    if (text.size() <= most) return printable(text, true);
+    return printable(text.substr(0, most - end), true) + " … " + printable(text.substr(text.size() - end), true);
 }
 
 }  // namespace
@@ -64,13 +53,13 @@ Terminal::Terminal() { catch_interrupts(); }
 void Terminal::notice(const std::string& text)
 {
     hide_progress();
-    std::cerr << "notice: " << printable(text) << "\n";
+    std::cerr << "notice: " << shown(text) << "\n";
 }
 
 void Terminal::complain(const std::string& message)
 {
     hide_progress();
-    std::cerr << "spawnfield: " << printable(message) << "\n";
+    std::cerr << "spawnfield: " << shown(message) << "\n";
 }
 
 Progress Terminal::show_progress(const std::string& label)
@@ -114,7 +103,7 @@ void Terminal::flush()
 void Terminal::summarize(const std::string& line, const std::string&, bool is_quiet)
 {
     hide_progress();
-    if (!is_quiet) std::cerr << printable(line) << "\n";
+    if (!is_quiet) std::cerr << shown(line) << "\n";
 }
 
 }  // namespace spawnfield::cli
