@@ -36,7 +36,8 @@ struct ReviewContents {
     /// What the colours of the layer show when the page is opened: verdict, height, island, or a quantity's name.
     std::string colors = "verdict";
     /// 2D rasters of one stance, one for each yaw. All of their poses are judged again, as Judge::check() or settle()
-    /// does, with the heights that the page has: multiples of 1e-6 m. Not in updates.
+    /// does, with the heights that the page has: multiples of 1e-6 m. In updates,
+    /// only those are judged again whose verdict may differ from that of the raster.
     std::vector<RasterResult> rasters = {};
     std::vector<PlaceQuantity> quantities =
         {};                                ///< besides tilt and margin of settled poses: what is measured of poses

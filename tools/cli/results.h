@@ -51,7 +51,7 @@ struct FoundVerdicts {
     Judge judge;  ///< that judged them
 };
 
-/// Of `review`, when it makes an update of an open page (Host::wants_update).
+/// Of `review`, if it is asked for new layers or poses of an open page (Host::wants_update).
 struct FoundUpdate {
     std::string pack;
 };
