@@ -327,7 +327,7 @@ TEST_CASE("output that cannot be written ends with status 1, and nothing remains
     desk.check({sample + "-o /dev/full", "spawnfield: /dev/full: cannot be written: No space left on device"}, 1);
     const ProgramRun full = run_program(desk, sample + ">/dev/full 2>err || (cat err >&2; rm err; exit 1)");
     CHECK(full.status == 1);
-    CHECK(full.err == "spawnfield: standard output: cannot be written\n");
+    CHECK(full.err == "spawnfield: standard output: cannot be written: No space left on device\n");
     desk.check(
         {"bake scene.yaml -q -o out", "spawnfield: out: exists and is not a map; choose another name or remove it"}, 1);
     const std::string raster = "raster map -q --dims 2 --step 1" + husky;
@@ -382,8 +382,11 @@ TEST_CASE("control characters of files reach the terminal as codes, and unreacha
     const ProgramRun name = run_program(folder, "info " + std::string(300, 'a'));
     CHECK(name.status == 4);
     CHECK_THAT(name.err, Contains("aaa: cannot be reached: File name too long"));
-    CHECK(run_program(folder, "--help >/dev/full").status == 1);
-    CHECK(run_program(folder, "--version >/dev/full").status == 1);
+    for (const char* const answer : {"--help", "sample --help", "--version", "man"}) {
+        const ProgramRun full = run_program(folder, std::string(answer) + " 2>err >/dev/full || (cat err >&2; exit 1)");
+        CHECK(full.status == 1);
+        CHECK(full.err == "spawnfield: standard output: cannot be written: No space left on device\n");
+    }
 }
 
 TEST_CASE("an output that would destroy an input or another output is refused before all work")

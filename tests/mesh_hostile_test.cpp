@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cstring>
 
 using namespace spawnfield;
@@ -219,6 +220,57 @@ TEST_CASE("PLY files are read or refused wherever they are cut or altered")
     check_harmed(folder, "a.ply", ply_square);
     check_harmed(folder, "a.ply", binary_square(false));
     check_harmed(folder, "a.ply", binary_square(true));
+}
+
+TEST_CASE("an STL file that is cut short is refused, as text and as binary")
+{
+    const TempFolder folder;
+    const std::string facet =
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    const std::string text = "solid a\n" + facet + facet + "endsolid a\n";
+    CHECK(complaint(folder, "a.stl", text) == "");
+    CHECK(complaint(folder, "a.stl", text + text) == "");
+    const std::string missing =
+        "has no endsolid after its last facet; is it cut short? If it is whole, add a line endsolid";
+    for (std::size_t size = 1 + text.find("endfacet"); size < text.rfind("endsolid") + 8; ++size)
+        CHECK(complaint(folder, "a.stl", text.substr(0, size)) == missing);
+    CHECK(complaint(folder, "a.stl", text + "solid b\n" + facet) == missing);
+
+    for (const std::string begin : {"made by hand", "solid made by hand"}) {  // both occur in binary files
+        std::string binary = begin + std::string(80 - begin.size(), ' ') + bytes_of_value(std::uint32_t(2), false);
+        for (int f = 0; f < 2; ++f) {
+            for (const float value : {0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f})
+                binary += bytes_of_value(value, false);
+            binary += std::string(2, '\0');
+        }
+        CHECK(complaint(folder, "a.stl", binary) == "");
+        const std::string declared = "declares 2 facets, for which a binary STL file has 184 bytes, but it has ";
+        for (std::size_t size = 84; size < binary.size(); ++size)
+            CHECK(complaint(folder, "a.stl", binary.substr(0, size)) ==
+                  declared + std::to_string(size) + "; is it cut short?");
+        CHECK(complaint(folder, "a.stl", binary + "more") == declared + "188; export it again");
+        check_harmed(folder, "a.stl", binary);
+    }
+    CHECK(complaint(folder, "a.stl", "made by hand") ==
+          "is an STL file of 12 bytes, needs at least 84; is it cut short?");
+    check_harmed(folder, "a.stl", text);
+}
+
+TEST_CASE("an OBJ or OFF file whose last line has no line break is read with a notice")
+{
+    const TempFolder folder;
+    const auto notices = [&](const std::string& name, const std::string& text) {
+        return load_scene(folder.write(name, text)).notices;
+    };
+    for (const auto& [name, text] : {std::pair{"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+                                     std::pair{"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"}}) {
+        const std::string whole = text, cut = whole.substr(0, whole.size() - 1);
+        const std::vector<std::string> before = notices(name, whole), after = notices(name, cut);
+        REQUIRE(after.size() == before.size() + 1);
+        CHECK(std::find(after.begin(), after.end(),
+                        (folder / name).string() + ": its last line has no line break; if the file was cut short, a "
+                                                   "part of its geometry is missing") != after.end());
+    }
 }
 
 TEST_CASE("COLLADA nodes that contain themselves, are nested too deep or are too many are refused")

@@ -277,7 +277,21 @@ TEST_CASE("files outside of the folders of --confine are refused, also by links;
         CHECK_THAT(run.err, Contains((real / "b.obj").string() + words));
         CHECK(run_program(folder, "info in/" + scene + ".yaml --confine in --confine .").status == 0);
     }
-    CHECK(run_program(folder, "info in/w.world --confine in").status == 4);
+    const ProgramRun world = run_program(folder, "info in/w.world --confine in");
+    CHECK(world.status == 4);
+    CHECK_THAT(world.err, Contains("in/w.world: line 1: <include> <uri> model://in2: cannot be used: ") &&
+                              Contains(words.substr(2)));
+    const std::string model =
+        "<model name='m'><link name='l'><collision name='c'><geometry><mesh><uri>../b.obj</uri>"
+        "</mesh></geometry></collision></link></model>";
+    folder.write("in/mesh.sdf", "<?xml version='1.0'?><sdf version='1.6'>" + model + "</sdf>");
+    folder.write("in/mesh.world",
+                 "<?xml version='1.0'?><sdf version='1.6'><world name='w'>" + model + "</world></sdf>");
+    CHECK_THAT(run_program(folder, "info in/mesh.world --confine in").err,
+               Contains("in/mesh.world: \"m::l::c\": ") && Contains((real / "b.obj").string() + words));
+    CHECK_THAT(run_program(folder, "info in/mesh.sdf --confine in").err,
+               Contains("in/mesh.sdf: link \"l\": collision \"c\": <mesh> cannot be used: ") &&
+                   Contains((real / "b.obj").string() + words));
     CHECK(run_program(folder, "info in/w.world --confine in --confine in2").status == 0);
     CHECK(run_program(folder, "info in/robot.yaml --confine in").status == 4);
     folder.write("own.yaml", "format: spawnfield-scene/1\nparts: [{name: a, label: terrain, mesh: in/a.obj}]\n");

@@ -50,9 +50,10 @@ Bytes map_file(const std::filesystem::path& file)
     require_file(file);
     const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
     struct stat status {};
-    if (descriptor < 0 || fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
-        if (descriptor >= 0) close(descriptor);
-        throw FileError(file.string(), "cannot be read");
+    if (descriptor < 0) throw FileError(file.string(), std::string("cannot be read: ") + std::strerror(errno));
+    if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
+        close(descriptor);
+        throw FileError(file.string(), "is no regular file any more");
     }
     const auto size = std::size_t(status.st_size);
     void* const start = size == 0 ? nullptr : mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);

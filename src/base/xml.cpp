@@ -12,12 +12,9 @@ namespace spawnfield {
 
 std::unique_ptr<tinyxml2::XMLDocument> read_xml(const std::filesystem::path& file, const std::string& expected)
 {
-    require_file(file);
+    const std::string text = read_file(file);
     auto document = std::make_unique<tinyxml2::XMLDocument>();
-    const tinyxml2::XMLError error = document->LoadFile(file.c_str());
-    if (error == tinyxml2::XML_ERROR_FILE_NOT_FOUND || error == tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED ||
-        error == tinyxml2::XML_ERROR_FILE_READ_ERROR)
-        throw FileError(file.string(), "cannot be read");
+    const tinyxml2::XMLError error = document->Parse(text.data(), text.size());
     if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT ||
         (error == tinyxml2::XML_SUCCESS && document->RootElement() == nullptr))
         throw FileError(file.string(), "is empty, needs " + expected);

@@ -6,6 +6,7 @@
 #include "mesh_reader/gltf_check.h"
 #include "mesh_reader/package_3mf.h"
 #include "mesh_reader/ply_file.h"
+#include "mesh_reader/stl_check.h"
 
 #include <spawnfield/error.h>
 
@@ -169,7 +170,10 @@ std::string prepare_import(const std::filesystem::path& file, MeshFormats format
     if (extension == ".3mf") check_3mf(bytes.view, file.string());
     if (extension == ".gltf" || extension == ".glb")
         check_gltf(bytes.view, file.string());  // assimp decides by the extension, too
-    if (extension == ".ply" || is_ply(bytes.view)) use_ply_importer(bytes.view, file.string(), importer);
+    if (extension == ".ply" || is_ply(bytes.view))
+        use_ply_importer(bytes.view, file.string(), importer);
+    else if (extension == ".stl")
+        check_stl(bytes.view, file.string());
     return is_collada(bytes.view, extension) ? check_collada(bytes.view, file.string()) : "";
 }
 

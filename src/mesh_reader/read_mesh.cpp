@@ -1,3 +1,4 @@
+#include "base/bytes.h"
 #include "base/input_file.h"
 #include "base/input_watch.h"
 #include "base/number.h"
@@ -208,6 +209,17 @@ struct Collector {
     }
 };
 
+/// Adds a notice if the last line of an OBJ or OFF file has no line break. These formats have no mark at their end, and
+/// assimp reads what is before the place where a file was cut.
+void note_open_end(const std::filesystem::path& file, FileMesh& mesh)
+{
+    const Bytes bytes = map_file(file);
+    if (!bytes.view.ends_with('\n') && !bytes.view.ends_with('\r'))
+        mesh.notices.push_back(file.string() +
+                               ": its last line has no line break; if the file was cut short, a part "
+                               "of its geometry is missing");
+}
+
 /// Throws FileError if assimp read fewer triangles than the file has: it skips faces whose vertices do not exist,
 /// without any message.
 void check_triangles(const aiScene& scene, std::size_t expected, const std::string& file)
@@ -260,6 +272,7 @@ FileMesh mesh_reader_module::read(const std::filesystem::path& file, MeshFormats
         mesh.up = 'y';
         mesh.notices = std::move(gltf.notices);
     }
+    if (extension == ".obj" || extension == ".off") note_open_end(file, mesh);
     if (extension == ".dae") {
         const std::string up = collada_up_axis(file);
         mesh.up = up == "Z_UP" ? 'z' : up == "X_UP" ? 'x' : 'y';

@@ -28,7 +28,7 @@ public:
             const std::string place = file.string() + ": " + line_of(include);
             const std::string uri = text_of(include, "uri");
             if (uri.empty()) throw FileError(place + "<include>", "has no <uri>, needs the model that it includes");
-            const fs::path found = included_file(uri, file.parent_path(), paths_);
+            const fs::path found = find(uri, file.parent_path(), place);
             if (found.empty()) {
                 ++missing_.try_emplace(uri, place.substr(0, place.size() - 2), std::size_t{0}).first->second.second;
                 return;
@@ -57,6 +57,15 @@ public:
     MissingIncludes take() { return std::move(missing_); }
 
 private:
+    fs::path find(const std::string& uri, const fs::path& folder, const std::string& place)
+    {
+        try {
+            return included_file(uri, folder, paths_);
+        } catch (const FileError& error) {  // for example, it is in no folder from which files may be read
+            throw FileError(place + "<include> <uri> " + uri, std::string("cannot be used: ") + error.what());
+        }
+    }
+
     ModelPaths& paths_;
     std::vector<fs::path> stack_;  ///< from the first file to this one
     std::map<fs::path, std::size_t> counts_;

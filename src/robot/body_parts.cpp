@@ -37,16 +37,28 @@ void append_ellipsoid(Robot& robot, const CollisionBody& body, const std::string
     robot.parts.push_back(std::move(part));
 }
 
+std::filesystem::path mesh_file_of(const CollisionBody& body, ModelPaths& paths, const std::string& file)
+{
+    const std::string& uri = body.geometry.uri;
+    std::filesystem::path found;
+    try {
+        found = paths.find(uri, body.geometry.folder);
+    } catch (const FileError& error) {  // it is in no folder from which files may be read
+        fail(body, file, std::string("<mesh> cannot be used: ") + error.what());
+    }
+    if (!std::filesystem::is_regular_file(found))
+        fail(body, file,
+             "<mesh> " + uri +
+                 " was not found beside the file, in --model-path, in GZ_SIM_RESOURCE_PATH, in GAZEBO_MODEL_PATH or "
+                 "in the folders above the file; add its folder to --model-path or fix the URI");
+    return found;
+}
+
 void append_mesh_body(Robot& robot, const CollisionBody& body, ModelPaths& paths, const std::string& file,
                       const RobotOptions& options)
 {
     const CollisionGeometry& geometry = body.geometry;
-    const std::filesystem::path found = paths.find(geometry.uri, geometry.folder);
-    if (!std::filesystem::is_regular_file(found))
-        fail(body, file,
-             "<mesh> " + geometry.uri +
-                 " was not found beside the file, in --model-path, in GZ_SIM_RESOURCE_PATH, in GAZEBO_MODEL_PATH or "
-                 "in the folders above the file; add its folder to --model-path or fix the URI");
+    const std::filesystem::path found = mesh_file_of(body, paths, file);
     try {
         // Like Gazebo, this applies the <unit> of a COLLADA file and ignores its <up_axis>.
         const FileMesh mesh = submesh_of(read_mesh(found, mesh_formats(options.any_mesh)), geometry, found.string());

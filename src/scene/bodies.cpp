@@ -119,7 +119,7 @@ private:
             if (geometry.kind == Kind::Unknown && !geometry.element.empty() && geometry.element != "empty")
                 ignore(body, "<" + geometry.element + "> is not a known geometry");
             if (geometry.kind != Kind::Mesh && geometry.kind != Kind::Heightmap) continue;
-            const fs::path found = paths_.find(geometry.uri, geometry.folder);
+            const fs::path found = file_of(body);
             if (std::error_code impossible; fs::is_regular_file(found, impossible)) {
                 files_[&body] = found;
                 if (geometry.kind == Kind::Mesh) meshes_.expect(found);
@@ -133,6 +133,20 @@ private:
             geometry.element.clear();
             is_incomplete_ = true;
         }
+    }
+
+    fs::path file_of(const CollisionBody& body)
+    {
+        try {
+            return paths_.find(body.geometry.uri, body.geometry.folder);
+        } catch (const FileError& error) {  // it is in no folder from which files may be read
+            throw fault(body, error.what());
+        }
+    }
+
+    FileError fault(const CollisionBody& body, const std::string& what) const
+    {
+        return FileError(file_.string(), "\"" + scoped_name(body) + "\": " + what);
     }
 
     void label(const std::vector<CollisionBody>& bodies)
@@ -219,9 +233,9 @@ private:
                                      auto_slope);
             }
         } catch (const std::domain_error& error) {
-            throw FileError(file_.string(), "\"" + scoped_name(body) + "\": <polyline>: " + error.what());
+            throw fault(body, std::string("<polyline>: ") + error.what());
         } catch (const FileError& error) {
-            throw FileError(file_.string(), "\"" + scoped_name(body) + "\": " + error.what());
+            throw fault(body, error.what());
         }
     }
 

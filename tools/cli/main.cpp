@@ -63,6 +63,18 @@ int run_guarded(const CLI::App& app, const ChosenCommand& chosen)
     }
 }
 
+/// Returns the status of a run that only wrote to standard output.
+int flushed(Terminal& terminal)
+{
+    try {
+        terminal.flush();
+        return done;
+    } catch (const OutputError& error) {
+        terminal.complain(error.what());
+        return failure;
+    }
+}
+
 std::vector<std::string> command_names(CLI::App& app)
 {
     std::vector<std::string> names;
@@ -108,8 +120,8 @@ int main(int argc, char** argv)
     } catch (const CLI::ParseError& error) {
         const std::string words = error.get_exit_code() == 0 ? "" : unknown_option(app);
         if (words.empty()) {
-            const bool is_answer = app.exit(error) == 0;  // --help, --version
-            return !is_answer ? wrong_usage : std::cout.flush() ? done : failure;
+            if (app.exit(error) != 0) return wrong_usage;
+            return flushed(terminal);  // --help, --version
         }
         terminal.complain(words + "\nRun with --help for more information.");
         return wrong_usage;

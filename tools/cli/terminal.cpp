@@ -7,9 +7,11 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -92,12 +94,24 @@ void Terminal::forget_interruption()
     catch_interrupts();
 }
 
-void Terminal::write(std::string_view text) { std::cout << text; }
+void Terminal::write(std::string_view text)
+{
+    std::cout << text;
+    note_output_fault();
+}
 
 void Terminal::flush()
 {
+    note_output_fault();  // CLI11 writes the help without write()
     std::cout.flush();
-    if (!std::cout) throw OutputError("standard output", "cannot be written");
+    note_output_fault();
+    if (output_fault_ != 0)
+        throw OutputError("standard output", std::string("cannot be written: ") + std::strerror(output_fault_));
+}
+
+void Terminal::note_output_fault()
+{
+    if (!std::cout && output_fault_ == 0) output_fault_ = errno;
 }
 
 void Terminal::summarize(const std::string& line, const std::string&, bool is_quiet)

@@ -26,7 +26,10 @@ public:
     void summarize(const std::string& line, const std::string& json, bool is_quiet) override;
 
 private:
+    void note_output_fault();
+
     bool is_bar_shown_ = false;
+    int output_fault_ = 0;  ///< errno of the first failure to write to standard output; 0: none
 };
 
 }  // namespace spawnfield::cli
