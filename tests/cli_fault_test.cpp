@@ -382,6 +382,13 @@ TEST_CASE("control characters of files reach the terminal as codes, and unreacha
     const ProgramRun name = run_program(folder, "info " + std::string(300, 'a'));
     CHECK(name.status == 4);
     CHECK_THAT(name.err, Contains("aaa: cannot be reached: File name too long"));
+    folder.write("a.yaml", "format: spawnfield-scene/1\nparts: [{name: a, label: terrain, box: [4, 4, 1]}]\n");
+    const ProgramRun bake = run_program(folder, "bake a.yaml -q -o map --summary /dev/full");
+    CHECK(bake.status == 1);
+    CHECK(bake.err ==
+          "spawnfield: --summary /dev/full: cannot be written: No space left on device; the result itself is "
+          "complete\n");
+    CHECK(run_program(folder, "info map").status == 0);
     for (const char* const answer : {"--help", "sample --help", "--version", "man"}) {
         const ProgramRun full = run_program(folder, std::string(answer) + " 2>err >/dev/full || (cat err >&2; exit 1)");
         CHECK(full.status == 1);

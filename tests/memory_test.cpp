@@ -83,6 +83,9 @@ TEST_CASE("a map that needs more memory than the limit is refused before the wor
     const ProgramRun raster = arena("raster map --dims 2 --step 0.01 --adaptive --max-memory 0.1GB" + husky_option);
     CHECK(raster.status == 1);
     CHECK_THAT(raster.err, Contains("at 0.01 m (--step), the limit is 100 MB (--max-memory); "));
+    const ProgramRun little = arena("info map --max-memory 99MB");
+    CHECK(little.status == 2);
+    CHECK_THAT(little.err, Contains("--max-memory is \"99MB\", needs at least 100 MB for the program itself"));
     const ProgramRun size = arena("info map --max-memory banana");
     CHECK(size.status == 2);
     CHECK_THAT(size.err, Contains("--max-memory is \"banana\", needs a size > 0, for example 8GB or 500MB"));

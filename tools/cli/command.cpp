@@ -4,8 +4,12 @@
 #include "messages.h"
 #include "numbers.h"
 
+#include <spawnfield/error.h>
+
 #include <algorithm>
 #include <functional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -51,12 +55,22 @@ void add_commands(CLI::App& app, const std::string& command_line, ChosenCommand&
         if (!is_known || is_it(command)) command.second();
 }
 
+/// A summary that cannot be written leaves the result, which is already there.
+void finish(Summary& summary)
+{
+    try {
+        summary.finish();
+    } catch (const OutputError& error) {
+        throw std::runtime_error("--summary " + std::string(error.what()) + "; the result itself is complete");
+    }
+}
+
 int run_command(const ChosenCommand& chosen)
 {
     Summary summary(chosen.name, *chosen.args);
     const Ending ending = chosen.work(summary);
     summary.lap("write");
-    summary.finish();
+    finish(summary);
     if (!ending.notice.empty()) notice(*chosen.args, ending.notice);
     if (!ending.complaint.empty()) chosen.host->complain(ending.complaint);
     return ending.status;

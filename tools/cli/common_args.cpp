@@ -12,9 +12,14 @@ void start_group(CLI::App& command, const std::string& name) { command.option_de
 
 double memory_limit(const CommonArgs& args)
 {
-    constexpr double default_share = 0.8;
-    static const double available = available_memory();  // before this process takes any
-    return args.max_memory.empty() ? default_share * available : parse_size("--max-memory", args.max_memory);
+    constexpr double default_share = 0.8, least = 100e6;  // bytes; the program needs less than that for itself
+    static const double available = available_memory();   // before this process takes any
+    if (args.max_memory.empty()) return default_share * available;
+    const double given = parse_size("--max-memory", args.max_memory);
+    if (given < least)
+        throw ArgumentError("--max-memory is \"" + args.max_memory + "\", needs at least " + memory_text(least) +
+                            " for the program itself");
+    return given;
 }
 
 void add_common(CLI::App& command, CommonArgs& args)

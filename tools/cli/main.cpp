@@ -13,6 +13,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
 
@@ -24,13 +25,16 @@ using namespace spawnfield::cli;
 std::string out_of_memory(const CommonArgs& args)
 {
     return "needs more memory than the limit of " + memory_text(memory_limit(args)) +
-           " (--max-memory); a coarser --resolution or --step, or smaller --bounds, needs less";
+           " (--max-memory); a coarser --resolution or --step, smaller --bounds or fewer --threads need less";
 }
 
-/// Some libraries turn std::bad_alloc into a text of their own, for example OpenCV.
+/// Some libraries turn std::bad_alloc into a text of their own, for example OpenCV. oneTBB says that it cannot create a
+/// thread if there is no memory for its stack.
 bool is_about_memory(const std::string& text)
 {
-    return text.find("bad_alloc") != std::string::npos || text.find("Failed to allocate") != std::string::npos;
+    constexpr std::array words = {"bad_alloc", "Failed to allocate", "pthread_create has failed"};
+    return std::any_of(words.begin(), words.end(),
+                       [&](const char* word) { return text.find(word) != std::string::npos; });
 }
 
 int run_guarded(const CLI::App& app, const ChosenCommand& chosen)
