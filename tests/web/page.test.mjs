@@ -167,6 +167,7 @@ test('quantities have colours and a scale with units', async () => {
   await page.selectOption('#color-by', { label: 'Clearance' });
   assert.ok(different(await colorAt(page, place), verdict));
   assert.match(await page.locator('.ticks').innerText(), /0 m[\s\S]*3 m/);
+  assert.match(await page.locator('.ticks + .check').innerText(), /^without a value/);
   await page.selectOption('#color-by', { label: 'Island' });
   assert.ok(different(await colorAt(page, place), verdict));
   await page.selectOption('#color-by', { label: 'Height of the ground' });
@@ -188,6 +189,30 @@ test('the cut hides the upper floor, for the eye and for clicks', async () => {
   }, place);
   assert.equal(below.ground, ORIGIN[2]);
   await page.click('#settings button:has-text("All")');
+});
+
+test('the cut leaves the markers of spawns on the floor', async () => {
+  const marker = at(-0.3, 5, 0.02 + 0.5 + 0.3 * 0.581); // above the spawn "gate"; its cross is white
+  await page.evaluate(() => window.spawnfield.top());
+  for (const floor of ['All', 'floor 1']) {
+    await page.click(`#settings button:has-text("${floor}")`);
+    const color = await colorAt(page, marker);
+    assert.ok(!different(color, [255, 255, 255]), `${floor}: ${color}`);
+  }
+  await page.click('#settings button:has-text("All")');
+});
+
+test('an answer says so if its ground is far from the place of the click', async () => {
+  await page.locator('#canvas').focus();
+  await page.keyboard.press('i');
+  const answer = await clickAt(page, at(0, 8, 2)); // the top of the wall; the ground is that below it
+  assert.equal(answer.ground, ORIGIN[2]);
+  assert.equal(
+    await page.textContent('#answer-remark'),
+    'The place that you clicked is 2 m above the nearest ground, which is judged here.',
+  );
+  await clickAt(page, at(-1, 4, 0));
+  assert.equal(await page.locator('#answer-remark').count(), 0);
 });
 
 test('keys change view and floor', async () => {

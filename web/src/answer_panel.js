@@ -67,6 +67,7 @@ export function createAnswerPanel(actions) {
           ),
         ),
         kind === 'spawn' && element('p', { class: 'where quiet', text: `${name}, ${answer.source}` }),
+        answer.remark && element('p', { class: 'quiet', id: 'answer-remark', text: answer.remark }),
         reason && element('p', { class: 'reason', id: 'answer-reason', text: reason }),
         hit &&
           element(

@@ -1,6 +1,7 @@
 // Answers as values: what the pack knows of a pose of a layer, or of a pose of a list.
 import { drawnHeight, NO_GROUND, poseNumbers, quantityAt } from './layer_data.js';
 import { row } from './csv.js';
+import { withUnit } from './numbers.js';
 
 export const CSV_COLUMNS = ['x', 'y', 'z', 'roll', 'pitch', 'yaw', 'verdict', 'ground', 'hit'];
 
@@ -70,6 +71,14 @@ export function spawnAnswer(json, list, index) {
     fields: list.columns?.map((column, c) => [column, list.rows?.[index]?.[c] ?? '']) ?? null,
     contacts: list.contacts?.[index] ?? [],
   };
+}
+
+/** Returns words if the ground of an answer is far above or below the place that was clicked, else ''. */
+export function farFromClick(answer, clickedHeight, step) {
+  const above = clickedHeight - answer.drawnHeight;
+  if (Math.abs(above) <= Math.max(0.5, step)) return '';
+  const distance = withUnit(Math.abs(above), 'm');
+  return `The place that you clicked is ${distance} ${above > 0 ? 'above' : 'below'} the nearest ground, which is judged here.`;
 }
 
 /** Returns the name of a pose of a list: its column "name", else its number. */

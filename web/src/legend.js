@@ -1,6 +1,6 @@
 // Colours of the layer: what it shows, the switches of the verdicts with their counts, patterns, the heading.
 import { element } from './dom.js';
-import { drawSwatch, ISLAND_COLORS, NO_ISLAND_COLOR, safeColor, verdictPatterns, viridis } from './palette.js';
+import { drawSwatch, ISLAND_COLORS, NO_ISLAND_COLOR, NO_VALUE_COLOR, safeColor, verdictPatterns, viridis } from './palette.js';
 import { grouped, rounded, withUnit } from './numbers.js';
 import { quantityRange } from './layer_data.js';
 
@@ -51,7 +51,7 @@ export function createLegend({ verdicts, islands, labels, layers, heights, color
       actions.colorBy({ mode: 'height', range: heights });
     } else if (quantity) {
       const range = quantityRange(quantity);
-      if (range) scale.append(...ramp(range, quantity.unit));
+      if (range) scale.append(...ramp(range, quantity.unit), colorRow(NO_VALUE_COLOR, 'without a value'));
       else scale.append(element('p', { class: 'quiet', text: 'No pose of this layer has a value.' }));
       actions.colorBy({ mode: 'quantity', quantity, range: range ?? [0, 1] });
     } else {
@@ -202,14 +202,16 @@ function islandLegend(islands) {
   return element(
     'div',
     {},
-    ...rows.map(([color, words, count]) =>
-      element(
-        'div',
-        { class: 'check' },
-        plainSwatch(color),
-        element('span', { class: 'words', text: words }),
-        element('span', { class: 'count', text: count }),
-      ),
-    ),
+    ...rows.map(([color, words, count]) => colorRow(color, words, count)),
+  );
+}
+
+function colorRow(color, words, count = '') {
+  return element(
+    'div',
+    { class: 'check' },
+    plainSwatch(color),
+    element('span', { class: 'words', text: words }),
+    element('span', { class: 'count', text: count }),
   );
 }

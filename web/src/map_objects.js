@@ -124,10 +124,10 @@ export function drawMarkers(map) {
   const valid = map.json.verdicts.findIndex(({ name }) => name === 'valid');
   const over = ([x, y, z], heights) => [x, y, z + heights * above];
   const ofSpawns = map.spawns.map(({ pose, verdict }) => {
-    return { place: over(pose, 1), verdict, shape: verdict === valid ? MARKER.disc : MARKER.crossed };
+    return { place: over(pose, 1), height: pose[2], verdict, shape: verdict === valid ? MARKER.disc : MARKER.crossed };
   });
   const ofMarks = map.marks.map(({ pose, mark }) => {
-    return { place: over(pose, 2), verdict: 0, shape: mark === 'good' ? MARKER.good : MARKER.bad };
+    return { place: over(pose, 2), height: pose[2], verdict: 0, shape: mark === 'good' ? MARKER.good : MARKER.bad };
   });
   map.markers = createMarkers([...ofSpawns, ...ofMarks], map.shared, map.origin);
   map.view.scene.add(map.markers);

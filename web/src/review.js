@@ -2,7 +2,7 @@
 import licences from 'licences';
 import { byId, element, notice } from './dom.js';
 import { nearestPose, readLayer } from './layer_data.js';
-import { layerAnswer, spawnAnswer, spawnName } from './answers.js';
+import { farFromClick, layerAnswer, spawnAnswer, spawnName } from './answers.js';
 import { createOverlay } from './overlay.js';
 import { createLegend } from './legend.js';
 import { createFloors } from './floors.js';
@@ -326,7 +326,9 @@ export async function pick(page, x, y) {
   const found = layer && placeAt(map, x, y);
   const highest = map.cut() === UNCUT ? Infinity : map.cut() + map.origin[2];
   const pose = found ? nearestPose(layer, ...found.place, highest) : -1;
-  select(page, pose < 0 ? null : layerAnswer(json, layer, pose));
+  const answer = pose < 0 ? null : layerAnswer(json, layer, pose);
+  if (answer) answer.remark = farFromClick(answer, found.place[2], layer.grid.step);
+  select(page, answer);
   if (layer && !found) page.answerPanel.clear('There is nothing of the world at this place.');
   else if (layer && pose < 0)
     page.answerPanel.clear('No pose was judged near this place. The raster of this page does not reach it.');

@@ -55,7 +55,8 @@ const robotFragment = /* glsl */ `
 `;
 
 const markerVertex = /* glsl */ `
-  in vec2 look;  // verdict, shape: 0 disc, 1 disc with a cross, 2 diamond with +, 3 diamond with -, 4 ring
+  in vec2 look;    // verdict, shape: 0 disc, 1 disc with a cross, 2 diamond with +, 3 diamond with -, 4 ring
+  in float poseHeight;  // the marker disappears with it where the world is cut
   uniform float pixelRatio, cut;
   flat out int verdict;
   flat out int shape;
@@ -63,7 +64,7 @@ const markerVertex = /* glsl */ `
     verdict = int(look.x + 0.5);
     shape = int(look.y + 0.5);
     gl_PointSize = (shape == 4 ? 34.0 : shape == 0 ? 12.0 : 17.0) * pixelRatio;
-    gl_Position = position.z > cut ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * viewMatrix * vec4(position, 1.0);
+    gl_Position = poseHeight > cut ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * viewMatrix * vec4(position, 1.0);
   }
 `;
 
@@ -150,7 +151,10 @@ export function createRobots(geometry, robots, shared, origin) {
   return object;
 }
 
-/** Returns one object for many markers: `markers` is an array of {place, verdict, shape}; places are in the scene. */
+/**
+ * Returns one object for many markers: `markers` is an array of {place, height, verdict, shape}. Places are in the scene;
+ * `height` is that of the pose, with which the marker disappears where the world is cut.
+ */
 export function createMarkers(markers, shared, origin) {
   const geometry = new BufferGeometry();
   geometry.setAttribute(
@@ -163,6 +167,13 @@ export function createMarkers(markers, shared, origin) {
   geometry.setAttribute(
     'look',
     new BufferAttribute(Float32Array.from(markers.flatMap(({ verdict, shape }) => [verdict, shape])), 2),
+  );
+  geometry.setAttribute(
+    'poseHeight',
+    new BufferAttribute(
+      Float32Array.from(markers, ({ height }) => height - origin[2]),
+      1,
+    ),
   );
   const material = new ShaderMaterial({
     glslVersion: GLSL3,

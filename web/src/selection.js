@@ -29,7 +29,8 @@ export function createSelection(view, robot, shared, origin) {
     objects = [];
     if (answer) {
       const place = [answer.pose[0], answer.pose[1], Math.max(answer.pose[2], answer.drawnHeight)];
-      objects.push(createMarkers([{ place, verdict: answer.verdict, shape: MARKER.ring }], shared, origin));
+      const ring = { place, height: place[2], verdict: answer.verdict, shape: MARKER.ring };
+      objects.push(createMarkers([ring], shared, origin));
       objects[0].material.depthTest = false;
       if (withRobot) objects.push(createRobots(robot(), [answer], shared, origin));
       objects.push(outline(answer.pose));
