@@ -1,6 +1,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "command.h"
+#include "host.h"
 
 #include <spawnfield/error.h>
 
@@ -8,21 +9,6 @@
 
 namespace spawnfield::python {
 namespace {
-
-/// The host of commands that are only described, never run.
-class NoHost : public cli::Host {
-    void notice(const std::string&) override {}
-    void complain(const std::string&) override {}
-    Progress show_progress(const std::string&) override { return {}; }
-    void hide_progress() override {}
-    bool is_interrupted() const override { return false; }
-    void forget_interruption() override {}
-    bool wants_text() const override { return false; }
-    bool wants_values() const override { return true; }
-    void write(std::string_view) override {}
-    void flush() override {}
-    void summarize(const std::string&, const std::string&, bool) override {}
-};
 
 nb::dict about(const CLI::Option& option)
 {
@@ -41,7 +27,7 @@ nb::dict about(const CLI::Option& option)
 /// Returns the options of all commands: for each command, its description and a list of options.
 nb::dict commands()
 {
-    NoHost host;
+    cli::SilentHost host;  // the commands are only described, never run
     cli::ChosenCommand chosen{.host = &host};
     CLI::App app;
     cli::add_commands(app, "spawnfield", chosen);

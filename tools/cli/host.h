@@ -69,4 +69,20 @@ public:
     }
 };
 
+/// A host without a terminal: what a command finds remains in `result`, and what it says is lost.
+class SilentHost : public Host {
+public:
+    void notice(const std::string&) override {}
+    void complain(const std::string&) override {}
+    Progress show_progress(const std::string&) override { return {}; }
+    void hide_progress() override {}
+    bool is_interrupted() const override { return false; }
+    void forget_interruption() override {}
+    bool wants_text() const override { return false; }
+    bool wants_values() const override { return true; }
+    void write(std::string_view) override {}
+    void flush() override {}
+    void summarize(const std::string&, const std::string&, bool) override {}
+};
+
 }  // namespace spawnfield::cli

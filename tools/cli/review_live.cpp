@@ -126,24 +126,13 @@ std::vector<GivenOption> given_options(const CLI::App& command)
 }
 
 /// Runs commands for a page, and keeps their messages.
-class PageHost : public Host {
+class PageHost : public SilentHost {
 public:
     explicit PageHost(const Host& outer) : outer_(outer) { wants_update = true; }
 
     void notice(const std::string& text) override { notices.push_back(text); }
     void complain(const std::string& message) override { complaint = message; }
-    Progress show_progress(const std::string&) override
-    {
-        return [](double) {};
-    }
-    void hide_progress() override {}
     bool is_interrupted() const override { return outer_.is_interrupted(); }
-    void forget_interruption() override {}
-    bool wants_text() const override { return false; }
-    bool wants_values() const override { return true; }
-    void write(std::string_view) override {}
-    void flush() override {}
-    void summarize(const std::string&, const std::string&, bool) override {}
 
     std::vector<std::string> notices;
     std::string complaint;
@@ -236,43 +225,48 @@ private:
         return robot;
     }
 
-    /// Removes the options of the command line that a command does not have.
-    void leave_out_unknown(const CLI::App& command, std::vector<std::string>& words) const
+    /// A query of the page: a command, the options of the request, and other words of the command line.
+    struct Query {
+        std::string command;
+        const Json& options;
+        For use;
+        std::vector<std::string> more = {};
+    };
+
+    static void add(std::vector<std::string>& words, const std::vector<std::string>& more)
     {
-        for (const GivenOption& given : given_)
-            if (command.get_option_no_throw(given.name) == nullptr) remove(given.words, words);
+        words.insert(words.end(), more.begin(), more.end());
     }
 
-    /// Returns the words without options about the map and the robot, which are in memory.
-    std::vector<std::string> without_inputs(std::vector<std::string> words) const
+    /// Runs a command that writes nothing, with these inputs besides the map and the robot. Options of the command line
+    /// hold for it, too, unless the request has them.
+    Result run(const Query& query, const std::map<std::string, std::any>& inputs = {}) const
     {
-        for (const GivenOption& given : given_)
-            if (given.is_input) remove(given.words, words);
-        return words;
-    }
-
-    static void remove(const std::vector<std::string>& some, std::vector<std::string>& words)
-    {
-        const auto found = std::search(words.begin(), words.end(), some.begin(), some.end());
-        if (found != words.end()) words.erase(found, found + std::ssize(some));
-    }
-
-    /// Runs a command that writes nothing, with these inputs besides the map and the robot.
-    Result run(std::vector<std::string> words, const std::map<std::string, std::any>& inputs = {}) const
-    {
+        std::vector<std::string> asked = words_of(query.options, query.use);
+        add(asked, query.more);
+        const std::vector<std::string> first{query.command, review_.args.map, "--robot", robot_of(query.options)};
         PageHost host(*review_.args.host);
         host.inputs = inputs;
         host.inputs[review_.args.map] = review_.map;
         host.inputs[review_.args.robot] = review_.robot;
         ChosenCommand chosen{.host = &host};
         CLI::App app;
-        add_commands(app, shell_line(words), chosen, words[1]);
-        leave_out_unknown(*app.get_subcommand(words[1]), words);
-        std::vector<std::string> all = without_inputs({words.begin() + 1, words.end()});
-        all.insert(all.end(), {"--threads", std::to_string(review_.args.threads)});
+        add_commands(app, "spawnfield " + query.command, chosen, query.command);
+        const CLI::App& command = *app.get_subcommand(query.command);
+        std::vector<std::string> words{"spawnfield"}, parsed = first;
+        add(words, first);
+        for (const GivenOption& given : given_) {
+            if (std::ranges::count(asked, given.name) > 0 || command.get_option_no_throw(given.name) == nullptr)
+                continue;
+            add(words, given.words);
+            if (!given.is_input) add(parsed, given.words);
+        }
+        add(words, asked);
+        add(parsed, asked);
+        add(parsed, {"--threads", std::to_string(review_.args.threads)});
         const auto start = std::chrono::steady_clock::now();
         try {
-            app.parse(std::vector<std::string>(all.rbegin(), all.rend()));
+            app.parse(std::vector<std::string>(parsed.rbegin(), parsed.rend()));
             run_command(chosen);
         } catch (const CLI::ParseError& error) {
             const std::string unknown = unknown_option(app);
@@ -294,22 +288,9 @@ private:
         return {std::move(host.result), std::move(words), time.count(), std::move(host.notices)};
     }
 
-    /// Returns the words of a command: those of the command line, and the options of a request. Regions of a request
-    /// replace those of the command line.
-    std::vector<std::string> command(const std::string& name, const Json& options, For use) const
-    {
-        std::vector<std::string> words{"spawnfield", name, review_.args.map, "--robot", robot_of(options)};
-        const std::vector<std::string> asked = words_of(options, use);
-        for (const GivenOption& given : given_)
-            if (std::ranges::count(asked, given.name) == 0)
-                words.insert(words.end(), given.words.begin(), given.words.end());
-        words.insert(words.end(), asked.begin(), asked.end());
-        return words;
-    }
-
     Result layers(const Json& options) const
     {
-        Result out = run(command("review", options, For::Layers));
+        Result out = run({"review", options, For::Layers});
         out.words.insert(out.words.end(), {"-o", "review.html"});
         return out;
     }
@@ -317,9 +298,7 @@ private:
     /// Returns an update with these poses, and the command that made them.
     Result judged(const Json& options, std::shared_ptr<const PoseTable> poses) const
     {
-        std::vector<std::string> words = command("review", options, For::All);
-        words.insert(words.end(), {"--spawns", "spawns.csv"});
-        Result out = run(std::move(words), {{"spawns.csv", std::move(poses)}});
+        Result out = run({"review", options, For::All, {"--spawns", "spawns.csv"}}, {{"spawns.csv", std::move(poses)}});
         out.words.insert(out.words.end(), {"-o", "review.html"});
         return out;
     }
@@ -335,7 +314,7 @@ private:
 
     Result spawns(const Json& options) const
     {
-        Result sampled = run(command("sample", options, For::Spawns));
+        Result sampled = run({"sample", options, For::Spawns});
         const auto* const found = std::any_cast<std::shared_ptr<const FoundSpawns>>(&sampled.found);
         if (found == nullptr) throw Refused{"no spawns were found"};
         Result out = judged(options, table_of(spawns_csv((*found)->list)));
