@@ -373,6 +373,7 @@ TEST_CASE("a robot that cannot be used is refused by file, place, value and limi
     };
     for (const auto& [text, wanted] : parts) CHECK_THROWS_WITH(load_parts(folder, text), yaml + ": " + wanted);
 
+    const std::string tree = "; the links of a robot form a tree: each is the child of one joint, except the root";
     const std::pair<std::string, std::string> links[] = {
         {"<link name=\"a\"/>", "has no <collision>, needs at least one (<visual> elements are not used)"},
         {link_of("a", "<box size=\"1 0 1\"/>"), "link \"a\": <box size> is 0, needs > 0"},
@@ -391,6 +392,16 @@ TEST_CASE("a robot that cannot be used is refused by file, place, value and limi
              "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 0\" "
              "quat_xyzw=\"0 0 1 0\"/></joint>",
          "line 5: <origin quat_xyzw> cannot be read here; write the rotation as rpy"},
+        {link_of("a", small_box) + link_of("b", small_box) + joint_of("a", "b", "xyz=\"0 0 0\"") +
+             "<joint name=\"k\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>",
+         "line 6: joint \"k\": link \"b\" is already the child of joint \"a_b\"" + tree},
+        {link_of("a", small_box) + "<joint name=\"k\" type=\"fixed\"><parent link=\"a\"/><child link=\"a\"/></joint>",
+         "line 4: joint \"k\": link \"a\" is in a cycle of joints" + tree},
+        // Link c is joined to a cycle of a and b beside a tree of one link.
+        {link_of("root", small_box) + link_of("a", small_box) + link_of("b", small_box) + link_of("c", small_box) +
+             joint_of("a", "b", "xyz=\"0 0 0\"") + joint_of("b", "a", "xyz=\"0 0 0\"") +
+             joint_of("a", "c", "xyz=\"0 0 0\""),
+         "line 8: joint \"b_a\": link \"a\" is in a cycle of joints" + tree},
         {link_of("a", small_box) + link_of("b", small_box),
          "is not valid URDF: Failed to find root link: Two root links found: [a] and [b]"},
         {link_of("a", "<box size=\"1 x 1\"/>"),

@@ -136,6 +136,44 @@ private:
                 refuse("<geometry> contains " + std::to_string(shapes) +
                        " shapes, needs one; give each a <collision> of its own");
         });
+        require_tree(*document->RootElement());
+    }
+
+    /// Refuses links that form no tree (http://wiki.ros.org/urdf/XML/joint). urdfdom accepts a link with two parents,
+    /// and leaks a cycle.
+    void require_tree(const Xml& robot) const
+    {
+        const auto refuse = [&](const Xml& joint, const std::string& what) {
+            throw FileError(file_.string(),
+                            line_of(joint) + "joint \"" + attribute_of(joint, "name") + "\": " + what +
+                                "; the links of a robot form a tree: each is the child of one joint, except the root");
+        };
+        std::map<std::string, const Xml*> joint_above;  // by name of the link
+        for_each_child(robot, "joint", [&](const Xml& joint) {
+            const std::string child = link_at(joint, "child");
+            if (child.empty()) return;  // urdfdom refuses it
+            const auto [known, is_new] = joint_above.emplace(child, &joint);
+            if (!is_new)
+                refuse(joint, "link \"" + known->first + "\" is already the child of joint \"" +
+                                  attribute_of(*known->second, "name") + "\"");
+        });
+        std::map<std::string, const Xml*> visited_from;  // the joint whose way to the root came here first, by link
+        for (const auto& [child, joint] : joint_above) {
+            std::string link = child;
+            for (auto above = joint_above.find(link); above != joint_above.end(); above = joint_above.find(link)) {
+                const auto [first, is_new] = visited_from.emplace(link, joint);
+                if (!is_new && first->second == joint)
+                    refuse(*above->second, "link \"" + link + "\" is in a cycle of joints");
+                if (!is_new) break;
+                link = link_at(*above->second, "parent");
+            }
+        }
+    }
+
+    static std::string link_at(const Xml& joint, const char* end)
+    {
+        const Xml* const element = joint.FirstChildElement(end);
+        return element == nullptr ? "" : attribute_of(*element, "link");
     }
 
     /// Adds the collisions of all links. A link comes before its children. There is no recursion, because a chain of

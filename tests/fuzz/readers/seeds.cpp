@@ -105,6 +105,11 @@ void add_settings(Collector& out, const fs::path& source)
             "<robot name=\"r\"><link name=\"a\"><inertial><origin xyz=\"0 0 1\"/><mass value=\"3\"/><inertia ixx=\"1\" "
             "ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial><collision><geometry><mesh "
             "filename=\"wedge.obj\" scale=\"1 1 2\"/></geometry></collision></link></robot>");
+    // Small, so that the fuzzer often exchanges the names of links.
+    out.add("robots", ".urdf",
+            "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><link name=\"c\"/><joint name=\"j\" type=\"fixed\">"
+            "<parent link=\"a\"/><child link=\"b\"/></joint><joint name=\"k\" type=\"continuous\"><parent link=\"b\"/>"
+            "<child link=\"c\"/></joint></robot>");
 }
 
 void add_scenes(Collector& out, const fs::path& source)
