@@ -6,8 +6,8 @@
 #include <spawnfield/poses.h>
 #include <spawnfield/raster_cells.h>
 
-#include <cmath>
-#include <limits>
+#include <bit>
+#include <cstdint>
 #include <span>
 
 namespace spawnfield {
@@ -32,6 +32,27 @@ std::string settled_raster_header(const std::optional<HeadingRule>& rule)
     return names;
 }
 
+/// Texts of numbers that repeat: x and y of a raster. Making a text takes much longer than finding it.
+class RepeatedNumbers {
+public:
+    /// The text is valid until the next call.
+    const std::string& text_of(double value)
+    {
+        const auto bits = std::bit_cast<std::uint64_t>(value);
+        Known& known = known_[bits * 0x9e3779b97f4a7c15 >> (64 - index_bits)];  // multiplicative hashing (Knuth)
+        if (known.text.empty() || known.bits != bits) known = {bits, number(value)};
+        return known.text;
+    }
+
+private:
+    static constexpr int index_bits = 12;
+    struct Known {
+        std::uint64_t bits = 0;
+        std::string text;  ///< empty: not made yet
+    };
+    std::vector<Known> known_{std::size_t{1} << index_bits};  // 160 kB
+};
+
 /// Makes the lines of a raster's poses.
 class PoseLines {
 public:
@@ -47,11 +68,14 @@ public:
     bool is_settled() const { return is_settled_; }
     std::string header() const { return is_settled_ ? settled_raster_header(rule_) : "x,y,z,yaw,layer,verdict"; }
 
-    /// Appends the line of a pose, without its end. `rest` is only used for settled poses. `y` is the text of pose.y.
-    void append(std::string& text, const RasterPose& pose, const RasterRest* rest, const std::string& y) const
+    /// Appends the line of a pose, without its end. `rest` is only used for settled poses.
+    void append(std::string& text, const RasterPose& pose, const RasterRest* rest) const
     {
-        append_number(text, pose.x);
-        ((text += ',') += y) += ',';
+        thread_local RepeatedNumbers numbers;
+        text += numbers.text_of(pose.x);
+        text += ',';
+        text += numbers.text_of(pose.y);
+        text += ',';
         append_number(text, pose.z);
         if (is_settled_) {
             text += ',';
@@ -70,20 +94,6 @@ private:
     const bool is_settled_;
 };
 
-/// The text of a y. A row of poses has the same y, and making the text takes time.
-class YText {
-public:
-    const std::string& of(double y)
-    {
-        if (y != y_) text_ = number(y_ = y);
-        return text_;
-    }
-
-private:
-    double y_ = std::numeric_limits<double>::quiet_NaN();
-    std::string text_;
-};
-
 }  // namespace
 
 void write_raster_csv(const RasterResult& raster, bool aerial, const std::function<void(std::string_view)>& sink,
@@ -96,10 +106,8 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
     std::size_t written = 0;  // poses
     const auto write = [&] {
         write_lines(poses.size(), threads, sink, texts, [&](std::string& text, std::size_t first, std::size_t end) {
-            YText y;
             for (std::size_t i = first; i < end; ++i) {
-                lines.append(text, poses[i], lines.is_settled() ? &raster.rests[written + i] : nullptr,
-                             y.of(poses[i].y));
+                lines.append(text, poses[i], lines.is_settled() ? &raster.rests[written + i] : nullptr);
                 text += '\n';
             }
         });
@@ -122,11 +130,10 @@ void write_raster_cells_csv(const RasterResult& raster, const std::vector<Raster
     sink(lines.header() + ",size,x_low,y_low,z_low,z_high\n");
     std::vector<std::string> texts;
     write_lines(cells.size(), threads, sink, texts, [&](std::string& text, std::size_t first, std::size_t end) {
-        YText y;
         for (std::size_t i = first; i < end; ++i) {
             const RasterCell& cell = cells[i];
             const RasterPose& pose = raster.poses[cell.pose];
-            lines.append(text, pose, lines.is_settled() ? &raster.rests[cell.pose] : nullptr, y.of(pose.y));
+            lines.append(text, pose, lines.is_settled() ? &raster.rests[cell.pose] : nullptr);
             text += ',';
             append_numbers(text, {cell.side * grid.step, grid.x_of(cell.col) - grid.step / 2,
                                   grid.y_of(cell.row) - grid.step / 2, cell.low, cell.high});
