@@ -107,9 +107,10 @@ void add_settings(Collector& out, const fs::path& source)
             "filename=\"wedge.obj\" scale=\"1 1 2\"/></geometry></collision></link></robot>");
     // Small, so that the fuzzer often exchanges the names of links.
     out.add("robots", ".urdf",
-            "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><link name=\"c\"/><joint name=\"j\" type=\"fixed\">"
-            "<parent link=\"a\"/><child link=\"b\"/></joint><joint name=\"k\" type=\"continuous\"><parent link=\"b\"/>"
-            "<child link=\"c\"/></joint></robot>");
+            "<robot name=\"r\"><link name=\"a\"><collision><geometry><sphere radius=\"1\"/></geometry></collision>"
+            "</link><link name=\"b\"/><link name=\"c\"/>"
+            "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>"
+            "<joint name=\"k\" type=\"continuous\"><parent link=\"b\"/><child link=\"c\"/></joint></robot>");
 }
 
 void add_scenes(Collector& out, const fs::path& source)
