@@ -516,6 +516,20 @@ TEST_CASE("joints that mimic nothing or themselves get a notice")
     CHECK_THROWS_WITH(load_urdf(folder, with_mimic("a")), file + ": joint \"a\" mimics itself");
 }
 
+TEST_CASE("a long chain of joints that mimic each other is followed once")
+{
+    const TempFolder folder;
+    constexpr int joints = 5000;
+    std::string arm = link_of("base", small_box);
+    for (int k = 0; k < joints; ++k) {
+        const std::string name = "j" + std::to_string(k), link = "l" + std::to_string(k);
+        arm += "<link name=\"" + link + "\"/>" +
+               axis_joint(name, "continuous", "base", link, "xyz=\"0 0 0\"", "0 0 1", "",
+                          k == 0 ? "" : "<mimic joint=\"j" + std::to_string(k - 1) + "\"/>");
+    }
+    CHECK(load_urdf(folder, arm, {.joints = {{"j0", 1}}}).parts.size() == 1);
+}
+
 TEST_CASE("a notice states how much larger the hull is than its mesh, or that this is unknown")
 {
     const TempFolder folder;

@@ -6,7 +6,6 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
 #include <cmath>
 
 namespace spawnfield {
@@ -30,15 +29,16 @@ public:
     Positions(const std::string& file, const std::vector<Joint>& joints, const std::vector<JointPosition>& given)
         : file_(file), joints_(joints)
     {
+        for (const Joint& joint : joints) by_name_.emplace(joint.name, &joint);
         for (const JointPosition& position : given) take(position);
     }
 
-    std::map<std::string, double> all(std::vector<std::string>& notices) const
+    std::map<std::string, double> all(std::vector<std::string>& notices)
     {
         std::map<std::string, double> out;
         for (const Joint& joint : joints_) {
             if (joint.motion != Joint::Motion::Turning && joint.motion != Joint::Motion::Sliding) continue;
-            const double value = out[joint.name] = value_of(joint, 0);
+            const double value = out[joint.name] = value_of(joint);
             if (is_within(joint, value)) continue;
             notices.push_back(file_ + ": joint \"" + joint.name + "\" is at " + number(value) + " " + unit_of(joint) +
                               (joint.mimic ? ", because it mimics \"" + joint.mimic->joint + "\"" : "") +
@@ -64,25 +64,42 @@ private:
         if (!given_.emplace(position.joint, position.value).second) refuse(place + "is given twice");
     }
 
-    double value_of(const Joint& joint, std::size_t depth) const
+    /// Follows a chain of joints that mimic each other to a known value, and then back. There is no recursion, because
+    /// a chain may be longer than the call stack.
+    double value_of(const Joint& joint)
     {
-        if (!joint.mimic) {
-            const auto entry = given_.find(joint.name);
-            return entry == given_.end() ? 0 : entry->second;
+        std::vector<const Joint*> chain;
+        for (const Joint* next = &joint; next != nullptr && !values_.contains(next); next = leader_of(*next)) {
+            if (chain.size() > joints_.size()) throw FileError(file_, "joint \"" + next->name + "\" mimics itself");
+            chain.push_back(next);
         }
+        for (auto at = chain.rbegin(); at != chain.rend(); ++at) values_[*at] = value_after(**at);
+        return values_.at(&joint);
+    }
+
+    /// Returns the position of a joint. That of the joint which it mimics must be known.
+    double value_after(const Joint& joint) const
+    {
+        if (joint.mimic) return joint.mimic->multiplier * values_.at(leader_of(joint)) + joint.mimic->offset;
+        const auto entry = given_.find(joint.name);
+        return entry == given_.end() ? 0 : entry->second;
+    }
+
+    /// Returns the joint that a joint mimics; nullptr if it mimics none.
+    const Joint* leader_of(const Joint& joint) const
+    {
+        if (!joint.mimic) return nullptr;
         const Joint* const leader = find(joint.mimic->joint);
         if (leader == nullptr)
             throw FileError(file_,
                             "joint \"" + joint.name + "\" mimics \"" + joint.mimic->joint + "\", which is not a joint");
-        if (depth > joints_.size()) throw FileError(file_, "joint \"" + joint.name + "\" mimics itself");
-        return joint.mimic->multiplier * value_of(*leader, depth + 1) + joint.mimic->offset;
+        return leader;
     }
 
     const Joint* find(const std::string& name) const
     {
-        const auto found = std::find_if(joints_.begin(), joints_.end(),
-                                        [&](const Joint& joint) { return joint.name == name; });
-        return found == joints_.end() ? nullptr : &*found;
+        const auto found = by_name_.find(name);
+        return found == by_name_.end() ? nullptr : found->second;
     }
 
     /// Returns the joints that can be given, for messages.
@@ -99,7 +116,9 @@ private:
 
     const std::string& file_;
     const std::vector<Joint>& joints_;
+    std::map<std::string, const Joint*> by_name_;
     std::map<std::string, double> given_;
+    std::map<const Joint*, double> values_;  ///< the known ones
 };
 
 }  // namespace

@@ -110,7 +110,7 @@ public:
         std::vector<Joint> joints;
         for (const auto& entry : model->joints_) joints.push_back(joint_of(*entry.second));
         positions_ = joint_positions(file_.string(), joints, joints_, out_.notices);
-        add_links(*model->getRoot());
+        add_links(*model);
         if (out_.bodies.empty())
             throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> elements are not used)");
         return std::move(out_);
@@ -123,9 +123,7 @@ private:
         const auto document = read_xml(file_, "a <robot> element");
         for_each_element(*document->RootElement(), [&](const Xml& element) {
             const std::string name = element.Name();
-            const auto refuse = [&](const std::string& what) {
-                throw FileError(file_.string(), line_of(element) + what);
-            };
+            const auto refuse = [&](const std::string& what) { fail(element, what); };
             if (name == "origin" && element.Attribute("quat_xyzw") != nullptr && element.Attribute("rpy") == nullptr)
                 refuse("<origin quat_xyzw> cannot be read here; write the rotation as rpy");
             const char* const parent = element.Parent()->Value();  // nullptr: the document
@@ -144,9 +142,8 @@ private:
     void require_tree(const Xml& robot) const
     {
         const auto refuse = [&](const Xml& joint, const std::string& what) {
-            throw FileError(file_.string(),
-                            line_of(joint) + "joint \"" + attribute_of(joint, "name") + "\": " + what +
-                                "; the links of a robot form a tree: each is the child of one joint, except the root");
+            fail(joint, "joint \"" + attribute_of(joint, "name") + "\": " + what +
+                            "; the links of a robot form a tree: each is the child of one joint, except the root");
         };
         std::map<std::string, const Xml*> joint_above;  // by name of the link
         for_each_child(robot, "joint", [&](const Xml& joint) {
@@ -178,18 +175,17 @@ private:
 
     /// Adds the collisions of all links. A link comes before its children. There is no recursion, because a chain of
     /// links may be longer than the call stack.
-    void add_links(const urdf::Link& root)
+    void add_links(const urdf::ModelInterface& model)
     {
-        std::vector<std::pair<const urdf::Link*, Pose>> open{{&root, {}}};
+        std::vector<std::pair<const urdf::Link*, Pose>> open{{model.getRoot().get(), {}}};
         while (!open.empty()) {
             const auto [link, robot_from_link] = open.back();
             open.pop_back();
             add_collisions(*link, robot_from_link);
             add_mass(*link, robot_from_link);
             for (auto joint = link->child_joints.rbegin(); joint != link->child_joints.rend(); ++joint)
-                for (const auto& child : link->child_links)
-                    if (child->name == (*joint)->child_link_name)
-                        open.emplace_back(child.get(), robot_from_child(*link, robot_from_link, **joint));
+                open.emplace_back(model.links_.at((*joint)->child_link_name).get(),
+                                  robot_from_child(*link, robot_from_link, **joint));
         }
     }
 
@@ -247,6 +243,11 @@ private:
         for (const double side : found.size)
             if (!(side > 0) || !std::isfinite(side))
                 fail(link, std::string(what) + " is " + number(side) + ", needs > 0");
+    }
+
+    [[noreturn]] void fail(const Xml& element, const std::string& what) const
+    {
+        throw FileError(file_.string(), line_of(element) + what);
     }
 
     [[noreturn]] void fail(const urdf::Link& link, const std::string& what) const
