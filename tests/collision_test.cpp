@@ -200,6 +200,47 @@ TEST_CASE("a search in a box finds what the rectangle below it has at these heig
     CHECK(found > 10000);
 }
 
+TEST_CASE("each tile that meets a box is visited once, in a rectangle that was expected and beyond it")
+{
+    const Geometry geometry(worlds::benchmark_balls(60).scene);
+    NearTiles tiles(geometry.impl());
+    std::size_t found = 0, within = 0;
+    Random random(8);
+    Rect area{};
+    for (int i = 0; i < 500; ++i) {
+        if (i % 50 == 0) {
+            area.low_x = random.between(-2, 8);
+            area.low_y = random.between(-2, 8);
+            area.high_x = area.low_x + random.between(0.1, 6);
+            area.high_y = area.low_y + random.between(0.1, 6);
+            tiles.expect(area);
+        }
+        const Vec3 low = i % 2 == 0 ? Vec3(random.between(-1, 9), random.between(-1, 9), random.between(-2, 60))
+                                    : Vec3(random.between(area.low_x, area.high_x),
+                                           random.between(area.low_y, area.high_y), random.between(-2, 60));
+        const Bounds space{low, low + Vec3{random.between(0, 2), random.between(0, 2), random.between(0, 3)}};
+        std::vector<const TileHead*> expected, visited;
+        geometry.impl().visit_tiles(space, [&](const Tile& tile, const ElementBox& box) {
+            if (overlap(box, space)) expected.push_back(tile.head);
+        });
+        tiles.visit(space, [&](const Tile& tile) {
+            visited.push_back(tile.head);
+            return true;
+        });
+        std::sort(expected.begin(), expected.end());
+        std::sort(visited.begin(), visited.end());
+        CHECK(visited == expected);
+        found += visited.size();
+        within += space.min.x() >= area.low_x && space.max.x() <= area.high_x && space.min.y() >= area.low_y &&
+                  space.max.y() <= area.high_y;
+        std::size_t calls = 0;
+        tiles.visit(space, [&](const Tile&) { return ++calls < 2; });
+        CHECK(calls == std::min<std::size_t>(2, expected.size()));
+    }
+    CHECK(found > 3000);
+    CHECK(within > 50);
+}
+
 TEST_CASE("a checker that keeps the tiles around its last pose, and knows the column, gives the same answers")
 {
     std::array<std::size_t, 2> free{}, neighbours{};
@@ -207,7 +248,8 @@ TEST_CASE("a checker that keeps the tiles around its last pose, and knows the co
         const Geometry geometry(random_scene(seed));
         const Robot robot = seed % 3 == 0 ? hull_robot() : random_robot(seed);
         const CollisionChecker checker(geometry, robot);
-        PoseChecker kept(checker), with_column(checker);
+        PoseChecker kept(checker), with_column(checker), expecting(checker), sharing(checker);
+        sharing.share_tiles(expecting);
         const Bounds all = geometry.bounds();
         const Vec3 size = robot.bounds().max - robot.bounds().min;
         Random random(seed);
@@ -216,6 +258,7 @@ TEST_CASE("a checker that keeps the tiles around its last pose, and knows the co
                         random.between(all.min.z() - 0.3, all.max.z() + 0.3));
         };
         Vec3 at = anywhere();
+        expecting.expect({at.x() - 1, at.y() - 2, at.x() + 2, at.y() + 1});  // other poses follow, too
         for (int step = 0; step < 300; ++step) {  // mostly short steps, and now and then a jump
             const bool is_near = random.between(0, 1) < 0.9;
             at = is_near ? Vec3(at + size.cwiseProduct(
@@ -228,7 +271,9 @@ TEST_CASE("a checker that keeps the tiles around its last pose, and knows the co
             CAPTURE(seed, step, at.transpose());
             REQUIRE(kept.is_free(pose) == !expected);
             REQUIRE(with_column.is_free(pose, &view) == !expected);
-            for (const auto& hit : {kept.find_hit(pose), with_column.find_hit(pose, &view)}) {
+            REQUIRE(expecting.is_free(pose) == !expected);
+            for (const auto& hit : {kept.find_hit(pose), with_column.find_hit(pose, &view), expecting.find_hit(pose),
+                                    sharing.find_hit(pose)}) {
                 REQUIRE(hit.has_value() == expected.has_value());
                 if (hit) REQUIRE(hit->part == expected->part);
             }

@@ -108,6 +108,31 @@ TEST_CASE("the columns of a block are those that are computed one by one")
     CHECK(column(scene, 0.2, 0.3).water == Heights{1.5});
 }
 
+TEST_CASE("blocks in the same memory are those in fresh memory, also after 65,536 of them")
+{
+    const Geometry geometry(hard_case(3).scene);
+    const Bounds bounds = geometry.bounds();
+    Columns columns;
+    ColumnGrid grid{.x0 = bounds.min.x(), .y0 = bounds.min.y(), .step = 0.1};
+    int different = 0, filled = 0;
+    for (int n = 0; n < 66000; ++n) {
+        const bool is_compared = n < 40 || n > 65500;
+        grid.cols = is_compared ? 1 + n % 13 : 1;
+        grid.rows = is_compared ? 1 + n % 7 : 1;
+        grid.first_col = n % 50;
+        columns.set(geometry, grid);
+        if (!is_compared) continue;
+        for (int j = 0; j < grid.rows; ++j)
+            for (int i = 0; i < grid.cols; ++i) {
+                const Column alone = column_at(geometry, grid.x_of(grid.first_col + i), grid.y_of(j));
+                different += !is_same(columns.at(i, j), alone);
+                filled += !alone.spans.empty();
+            }
+    }
+    CHECK(different == 0);
+    CHECK(filled > 1000);
+}
+
 TEST_CASE("a bridge has a layer on it and one under it")
 {
     Scene scene;

@@ -1,7 +1,12 @@
 #pragma once
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 #include <bit>
 #include <cstdint>
+#include <cstring>
 
 namespace spawnfield {
 
@@ -16,6 +21,24 @@ void for_each_bit(std::uint64_t bits, const Visit& visit)
 inline std::uint64_t bits_between(int first, int last)
 {
     return first <= last ? ~std::uint64_t{0} >> (63 - last) & ~std::uint64_t{0} << first : 0;
+}
+
+/// Sixteen bytes in one register. The type is an extension of GCC and clang.
+using SixteenBytes = std::uint8_t __attribute__((vector_size(16)));
+
+/// Returns a bit for each byte, the first one for byte 0. Each byte is 0 or 255.
+inline std::uint32_t bits_of(const SixteenBytes& bytes)
+{
+#ifdef __SSE2__
+    return std::uint32_t(_mm_movemask_epi8(__m128i(bytes)));
+#else
+    std::uint64_t halves[2];
+    std::memcpy(halves, &bytes, sizeof bytes);
+    const auto bits = [](std::uint64_t half) {  // the product moves bit 0 of byte k to bit 56 + k
+        return std::uint32_t((half & 0x0101010101010101) * 0x0102040810204080 >> 56);
+    };
+    return bits(halves[0]) | bits(halves[1]) << 8;
+#endif
 }
 
 }  // namespace spawnfield

@@ -10,8 +10,10 @@
 #include <spawnfield/collision.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace spawnfield {
+
 namespace {
 
 using narrow_phase_module::Body;
@@ -25,6 +27,8 @@ Transform transform_of(const Pose& pose)
     transform.translation() = pose.position;
     return transform;
 }
+
+}  // namespace
 
 /// A part of the robot in the forms that the check needs. The constructor takes a part that is already grown by
 /// touch_margin. The corners of a hull are in the robot's frame, so robot_from_shape is the identity for hulls.
@@ -59,26 +63,31 @@ struct CheckedPart {
                                                                : std::nullopt;
     }
 
-    Bounds bounds_at(const Pose& pose) const
+    /// Returns the bounds of the part when the robot is turned by `rotation`, relative to the robot's position, m.
+    Bounds bounds_at(const Mat3& rotation) const
     {
         if (bounds_shape.kind != ShapeKind::Hull) {
             Shape placed = bounds_shape;
-            placed.pose = pose * bounds_shape.pose;
+            placed.pose = Pose{Vec3::Zero(), rotation} * bounds_shape.pose;
             return bounds_of(placed);
         }
         Bounds box;
-        for (const Vec3& vertex : hull_vertices) box.extend(pose.rotation * vertex + pose.position);
+        for (const Vec3& vertex : hull_vertices) box.extend(rotation * vertex);
         return box;
     }
 };
 
-/// A part of the robot at one pose. The narrow phase gets all coordinates relative to the robot's position, so that
-/// they are small and precise even far from the scene's origin.
+/// A part of the robot, turned as at one pose. All coordinates are relative to the robot's position and along the axes
+/// of the scene, so that they are small and precise even far from the scene's origin.
 struct PlacedPart {
     const CheckedPart* part;
-    Transform robot_from_shape;  ///< "robot" here: a frame with the scene's axes and the robot's position as origin
-    Bounds bounds;               ///< in the scene's frame
+    Transform robot_from_shape;
+    Bounds bounds;
 };
+
+namespace {
+
+Bounds moved(const Bounds& box, const Vec3& by) { return {box.min + by, box.max + by}; }
 
 /// Compares a part with a triangle by a fast test, which decides most of the triangles near a robot without FCL. FCL
 /// must decide if the part and the triangle nearly touch, because its answer depends on its own tolerance. The test
@@ -103,20 +112,15 @@ struct CollisionChecker::Impl {
     std::unique_ptr<const Body> octree;  ///< of `tree`; empty: the geometry is checked
     std::vector<CheckedPart> parts;
     bool fcl_only = false;
+    double reach = 0;  ///< of the farthest point of the robot from its origin, or more, m
 
     explicit Impl(const Robot& r) : robot(r)
     {
-        for (const RobotPart& part : robot.parts) parts.emplace_back(narrow_phase, grown(part, touch_margin));
-    }
-
-    std::vector<PlacedPart> place(const Pose& pose) const
-    {
-        std::vector<PlacedPart> placed;
-        placed.reserve(parts.size());
-        for (const CheckedPart& part : parts)
-            placed.push_back(
-                {&part, transform_of(Pose{Vec3::Zero(), pose.rotation} * part.robot_from_shape), part.bounds_at(pose)});
-        return placed;
+        for (const RobotPart& part : robot.parts) {
+            const CheckedPart& checked = parts.emplace_back(narrow_phase, grown(part, touch_margin));
+            const Bounds box = checked.bounds_at(Mat3::Identity());
+            reach = std::max(reach, box.max.cwiseAbs().cwiseMax(box.min.cwiseAbs()).norm());
+        }
     }
 
     bool element_meets(const Tile& tile, std::uint32_t element, const std::vector<PlacedPart>& placed,
@@ -134,7 +138,7 @@ struct CollisionChecker::Impl {
         for (const PlacedPart& part : placed) {
             const AxisTest result = fcl_only ? AxisTest::Unclear : axis_test_of(part, corners);
             if (result == AxisTest::Overlap) return true;
-            if (result == AxisTest::Unclear && overlap(tile.box(triangle), part.bounds) &&
+            if (result == AxisTest::Unclear && overlap(tile.box(triangle), moved(part.bounds, origin)) &&
                 narrow_phase.meets_triangle(*part.part->body, part.robot_from_shape, corners))
                 return true;
         }
@@ -148,7 +152,7 @@ struct CollisionChecker::Impl {
         const Shape shape = tile.primitive(element).shape();
         const Transform robot_from_other = transform_of({shape.pose.position - origin, shape.pose.rotation});
         return std::any_of(placed.begin(), placed.end(), [&](const PlacedPart& part) {
-            return overlap(box, part.bounds) &&
+            return overlap(box, moved(part.bounds, origin)) &&
                    narrow_phase.meets_shape(*part.part->body, part.robot_from_shape, shape, robot_from_other);
         });
     }
@@ -232,51 +236,51 @@ std::optional<CollisionHit> PoseChecker::find_hit(const Pose& scene_from_robot, 
     return find(scene_from_robot, false, column);
 }
 
-/// Returns the tiles that meet a box around the robot, and others near it.
-const std::vector<PoseChecker::NearTile>& PoseChecker::tiles_near(const Bounds& space)
+PoseChecker::PoseChecker(const CollisionChecker& checker)
+    : impl_(checker.impl()), tiles_(std::make_shared<NearTiles>(impl_.geometry.impl())),
+      rotation_(Mat3::Constant(std::nan("")))
 {
-    const auto contains = [](const Bounds& outer, const Bounds& inner) {
-        return (outer.min.array() <= inner.min.array()).all() && (outer.max.array() >= inner.max.array()).all();
-    };
-    const auto grown = [](const Bounds& box) {
-        constexpr double reach = 3;  // by so many of its own lengths: the poses of a raster are that near to each other
-        const Vec3 by = reach * (box.max - box.min);
-        return Bounds{box.min - by, box.max + by};
-    };
-    if (!contains(known_, space)) {
-        const Bounds wanted = contains(grown(last_), space) ? grown(space) : space;
-        known_ = {};  // remains so if a tile is damaged
-        tiles_.clear();
-        impl_.geometry.impl().visit_tiles(wanted, [&](const Tile& tile, const ElementBox& box) {
-            tiles_.push_back({tile, box});
-        });
-        known_ = wanted;
+}
+PoseChecker::~PoseChecker() = default;
+
+void PoseChecker::expect(const Rect& places)
+{
+    tiles_->expect({places.low_x - impl_.reach, places.low_y - impl_.reach, places.high_x + impl_.reach,
+                    places.high_y + impl_.reach});
+}
+
+/// Places the robot's parts. Neighbouring poses often have the same rotation.
+void PoseChecker::set_rotation(const Mat3& rotation)
+{
+    if (rotation == rotation_) return;
+    rotation_ = rotation;
+    placed_.clear();
+    around_ = {};
+    for (const CheckedPart& part : impl_.parts) {
+        placed_.push_back(
+            {&part, transform_of(Pose{Vec3::Zero(), rotation} * part.robot_from_shape), part.bounds_at(rotation)});
+        around_.extend(placed_.back().bounds.min);
+        around_.extend(placed_.back().bounds.max);
     }
-    last_ = space;
-    return tiles_;
 }
 
 /// Returns the hit with the smallest part number; with `any_will_do` any hit, which is faster. Returns nothing if the
 /// robot does not collide.
 std::optional<CollisionHit> PoseChecker::find(const Pose& pose, bool any_will_do, const ColumnView* column)
 {
-    const std::vector<PlacedPart> placed = impl_.place(pose);
-    if (impl_.octree) return impl_.find_in_octree(placed, pose.position - impl_.tree->origin());
-    Bounds all;
-    for (const PlacedPart& part : placed) {
-        all.extend(part.bounds.min);
-        all.extend(part.bounds.max);
-    }
+    set_rotation(pose.rotation);
+    if (impl_.octree) return impl_.find_in_octree(placed_, pose.position - impl_.tree->origin());
+    const Bounds space = moved(around_, pose.position);
     std::uint32_t best = CollisionHit::occupancy;  // larger than every part number: no hit yet
-    for (const auto& [tile, box] : tiles_near(all)) {
-        if (!overlap(box, all)) continue;
-        for_each_bit(tile.near(all), [&, &t = tile](std::uint32_t element) {
-            if ((any_will_do && best != CollisionHit::occupancy) || t.label(element) == Label::Water) return;
-            const std::uint32_t part = t.part(element);
-            if (part < best && impl_.element_meets(t, element, placed, pose.position)) best = part;
+    const auto is_wanted = [&] { return !any_will_do || best == CollisionHit::occupancy; };
+    tiles_->visit(space, [&](const Tile& tile) {
+        for_each_bit(tile.near(space), [&](std::uint32_t element) {
+            if (!is_wanted() || tile.label(element) == Label::Water) return;
+            const std::uint32_t part = tile.part(element);
+            if (part < best && impl_.element_meets(tile, element, placed_, pose.position)) best = part;
         });
-        if (any_will_do && best != CollisionHit::occupancy) break;
-    }
+        return is_wanted();
+    });
     if (!any_will_do || best == CollisionHit::occupancy) best = impl_.first_around(pose, column, best);
     if (best == CollisionHit::occupancy) return std::nullopt;
     return CollisionHit{best};

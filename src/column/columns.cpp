@@ -13,33 +13,32 @@ namespace {
 /// Finds which columns of a block may lie in a box.
 class BlockIndex {
 public:
-    explicit BlockIndex(const ColumnGrid& grid)
-        : origin_(grid.x0, grid.y0), inverse_step_(1 / grid.step), first_(grid.first_col, grid.first_row),
-          last_(grid.cols - 1, grid.rows - 1), shift_(grid.shift)
-    {
-    }
-
     using Pair = SeenTriangle::Place;
+
+    explicit BlockIndex(const ColumnGrid& grid)
+        : low_(grid.x_of(grid.first_col), grid.y_of(grid.first_row)), high_(low_), inverse_step_(1 / grid.step),
+          last_(grid.cols - 1, grid.rows - 1)
+    {
+        constexpr double pad = 2 * touch_tolerance;  // m: a line so near to an element may touch it
+        constexpr double rounding = 1e-6;            // of a step; more than the rounding error of indices up to 2^31
+        low_ += pad + rounding * grid.step;
+        high_ -= pad + rounding * grid.step;
+    }
 
     /// Returns whether any column may lie in the rectangle from `min` to `max`. If so, sets their range.
     bool find(const Pair& min, const Pair& max, ColumnRange& out) const
     {
-        constexpr double rounding = 1e-6;  // of a step; more than the rounding error of indices up to 2^31
-        const Pair low = steps_to(min - pad) - rounding, high = steps_to(max + pad) + rounding;
-        const Pair from = (low.ceil() - first_).max(0), to = (high.floor() - first_).min(last_);
+        const Pair from = ((min - low_) * inverse_step_).ceil().max(0),
+                   to = ((max - high_) * inverse_step_).floor().min(last_);
         if (!(from <= to).all()) return false;
         out = {int(from[0]), int(to[0]), int(from[1]), int(to[1])};
         return true;
     }
 
 private:
-    static constexpr double pad = 2 * touch_tolerance;  // m: a line so near to an element may touch it
-    Pair steps_to(const Pair& place) const { return (place - origin_) * inverse_step_ - shift_; }
-
-    const Pair origin_;
+    Pair low_, high_;  ///< of the first column, moved by what may be lost to tolerance and rounding, m
     const double inverse_step_;
-    const Pair first_, last_;
-    const double shift_;
+    const Pair last_;
 };
 
 /// Returns the side of a square that has as many elements as a tile, if they are spread evenly, m.
@@ -83,26 +82,29 @@ Columns::Columns(const Geometry& geometry, const ColumnGrid& grid, Surfaces surf
 void Columns::start(int cols, int rows)
 {
     cols_ = cols;
-    slots_.assign(std::size_t(cols) * std::size_t(rows), {});
+    count_ = std::size_t(cols) * std::size_t(rows);
+    if (slots_.size() < count_ || ++round_ == 0) {
+        slots_.assign(std::max(slots_.size(), count_), {});
+        round_ = 1;
+    }
     starts_.assign(1, {});
     column_.spans.clear();
     column_.layers.clear();
     column_.water.clear();
     listed_.clear();
+    full_.clear();
 }
 
 void Columns::set(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
 {
     start(grid.cols, grid.rows);
-    if (slots_.empty()) return;
+    if (count_ == 0) return;
     const double elements = geometry.impl().elements_near(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
                                                           grid.x_of(grid.first_col + grid.cols),
                                                           grid.y_of(grid.first_row + grid.rows));
     constexpr double elements_per_look_up = 50;  // so many elements are scanned in the time of one look-up
-    if (elements > elements_per_look_up * double(slots_.size()))
-        look_up(geometry, grid, surfaces);
-    else
-        scan(geometry, grid, surfaces);
+    are_dense_ = elements <= elements_per_look_up * double(count_);
+    are_dense_ ? scan(geometry, grid, surfaces) : look_up(geometry, grid, surfaces);
 }
 
 /// Finds the tiles of several places at once.
@@ -173,9 +175,7 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
 /// Completes the columns that have more than a slot can hold.
 void Columns::complete_all()
 {
-    if (listed_.empty()) return;
-    for (Slot& slot : slots_)
-        if (slot.has_more) complete(slot);
+    for (const std::uint32_t number : full_) complete(slots_[number]);
 }
 
 void Columns::add_triangle(const SeenTriangle& seen, const ColumnRange& range)
@@ -258,9 +258,18 @@ void Columns::add_primitive(const Tile& tile, std::uint32_t element, const Colum
                 add(slots_[number(i, j)], *hit);
 }
 
+/// Empties a slot that was last used for another block.
+inline void Columns::refresh(Slot& slot)
+{
+    if (slot.round == round_) return;
+    slot.round = round_;
+    slot.has_span = slot.has_water = slot.has_more = false;
+}
+
 /// Adds the hit of a sheet at height z, unless the slot has the same hit already: triangles share corners and edges.
 inline void Columns::add_sheet(Slot& slot, const SurfaceHit& hit, double z)
 {
+    refresh(slot);
     if (!slot.has_more && hit.water) {
         if (slot.has_water && slot.water == z) return;
         if (!slot.has_water) {
@@ -286,6 +295,7 @@ inline void Columns::add_sheet(Slot& slot, const SurfaceHit& hit, double z)
 /// Adds a hit to the list of a column. The list begins with what the slot has.
 void Columns::add(Slot& slot, const SurfaceHit& hit)
 {
+    refresh(slot);
     if (!slot.has_more) {
         SurfaceHit first{};
         first.element = std::exchange(slot.index, none);
@@ -301,6 +311,7 @@ void Columns::add(Slot& slot, const SurfaceHit& hit)
         first.z = {slot.water, slot.water};
         if (slot.has_water) list(slot, first);
         slot.has_more = true;
+        full_.push_back(std::uint32_t(&slot - slots_.data()));
     }
     list(slot, hit);
 }
@@ -326,6 +337,7 @@ void Columns::complete(Slot& slot)
 /// Ends the column that was added to column_ last.
 void Columns::end_column(Slot& slot)
 {
+    refresh(slot);
     slot.has_more = true;
     slot.index = std::uint32_t(starts_.size() - 1);
     starts_.push_back({std::uint32_t(column_.spans.size()), std::uint32_t(column_.layers.size()),

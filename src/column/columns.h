@@ -88,6 +88,9 @@ public:
     /// Computes the columns of another block in the same memory, which is faster than fresh memory for each block.
     void set(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces = Surfaces::All);
 
+    /// Returns whether the last block read all tiles in it, because it has many columns for its elements.
+    bool are_dense() const { return are_dense_; }
+
     /// Computes the columns at these places (x, y), m, of which neighbours should follow each other. The column of
     /// places[i] is at(i, 0).
     void set(const Geometry& geometry, std::span<const Vec2> places);
@@ -96,6 +99,7 @@ public:
     ColumnView at(int i, int j) const
     {
         const Slot& slot = slots_[number(i, j)];
+        if (slot.round != round_) return {};
         if (!slot.has_more)
             return {{&slot.span, slot.has_span},
                     {&slot.span.top, slot.has_span && slot.span.terrain},
@@ -116,7 +120,7 @@ public:
     {
         constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
         const Slot& slot = slots_[number(i, j)];
-        if (!slot.has_span || !slot.span.terrain || slot.has_more) return {nothing, nothing};
+        if (slot.round != round_ || !slot.has_span || !slot.span.terrain || slot.has_more) return {nothing, nothing};
         return {slot.span.top, slot.has_water ? slot.water : nothing};
     }
 
@@ -129,7 +133,10 @@ private:
         /// The element of `span`. If the column has more: while scanning, its first hit in listed_, and then, its place
         /// in starts_.
         std::uint32_t index = 0;
-        bool has_span = false, has_water = false, has_more = false;
+        bool has_span : 1 = false, has_water : 1 = false, has_more : 1 = false;
+        /// The slot is empty if this is not Columns::round_. So a block need not empty all slots before it uses them,
+        /// which would take 5 % of the time of a dense raster.
+        std::uint16_t round = 0;
     };
     struct Start {
         std::uint32_t span = 0, layer = 0, water = 0;
@@ -150,6 +157,7 @@ private:
     void add_inside(Slot& slot, const TrianglePlane& plane, double x, double y);
     void add_rim(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y);
     void add_primitive(const Tile& tile, std::uint32_t element, const ColumnRange& range);
+    void refresh(Slot& slot);
     void add_sheet(Slot& slot, const SurfaceHit& hit, double z);
     void add(Slot& slot, const SurfaceHit& hit);
     void list(Slot& slot, const SurfaceHit& hit);
@@ -159,6 +167,9 @@ private:
     std::size_t number(int i, int j) const { return std::size_t(j) * std::size_t(cols_) + std::size_t(i); }
 
     int cols_ = 0;
+    std::size_t count_ = 0;    ///< of the block's columns; slots_ may have more
+    std::uint16_t round_ = 0;  ///< counts the blocks
+    bool are_dense_ = false;
     std::vector<double> x_, y_;  ///< of the block's columns, m, and x of a few more for TriangleSides; while scanning
     std::vector<Slot> slots_;
     Column column_;
@@ -166,6 +177,7 @@ private:
 
     // Only used while the columns are computed:
     std::vector<ListedHit> listed_;
+    std::vector<std::uint32_t> full_;  ///< the slots whose columns have hits in listed_
     std::vector<SurfaceHit> hits_;
     ColumnBuilder builder_;
 };

@@ -638,6 +638,7 @@ Proof Mask::proof_near(Part& part, const Vec3& position, Surroundings surroundin
         proof = proof_of(part, pass, coarser, position.x(), position.z());
         coarser = &pass;
         if (proof != Proof::Candidate || coarse_only_) break;
+        if (leaves_layered_ && surroundings == Surroundings::Layered) break;
     }
     return proof;
 }

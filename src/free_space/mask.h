@@ -35,6 +35,9 @@ public:
     void set_every_yaw();                     ///< upright robot; proofs hold for every yaw
     /// From now on, proofs use only the coarsest cells that are useful. They read few tiles, and prove less.
     void use_coarse_cells() { coarse_only_ = true; }
+    /// From now on, where cells have several intervals (under trees, at walls), proofs use only the coarsest cells, and
+    /// prove less: for callers whose exact check takes less time than a look at fine cells one by one.
+    void leave_layered_cells() { leaves_layered_ = true; }
     Proof proof_of(const Vec3& position);
     /// Sets out[i] to the proof of the pose (x[i], y, z[i]), which is faster than one pose after the other. The x of
     /// the poses are ascending. Poses whose z[i] is NaN are not looked at, and are not Blocked. If a pose is more than
@@ -124,7 +127,7 @@ private:
     const FreeSpace::Impl& space_;
     const SolidBounds::Impl& raster_;
     std::vector<Part> parts_;
-    bool coarse_only_ = false;
+    bool coarse_only_ = false, leaves_layered_ = false;
     std::vector<Surroundings> surroundings_;               ///< of the poses of a row
     double y_ = std::numeric_limits<double>::quiet_NaN();  ///< y of the last pose that was not clear; for pass.rows
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/bits.h"
 #include "base/rounding.h"
 
 #include <spawnfield/scene.h>
@@ -206,21 +207,21 @@ private:
     template <std::size_t Axes, std::size_t First = 0>
     std::uint64_t marks(const std::array<double, Axes>& low, const std::array<double, Axes>& high) const
     {
-        std::array<std::uint8_t, TileBoxes::most> meets;
-        meets.fill(1);
-        for (std::size_t axis = First; axis < First + Axes; ++axis) {
-            const std::uint8_t from = head->scales[axis].number_of(low[axis - First]),
-                               to = head->scales[axis].number_of(high[axis - First]);
-            const std::uint8_t *const min = boxes->min[axis].data(), *const max = boxes->max[axis].data();
-#pragma omp simd
-            for (std::size_t e = 0; e < TileBoxes::most; ++e)
-                meets[e] = std::uint8_t(meets[e] & (min[e] <= to) & (max[e] >= from));
+        std::array<SixteenBytes, Axes> from, to;  // in all their bytes
+        for (std::size_t k = 0; k < Axes; ++k) {
+            from[k] = SixteenBytes{} + head->scales[First + k].number_of(low[k]);
+            to[k] = SixteenBytes{} + head->scales[First + k].number_of(high[k]);
         }
         std::uint64_t out = 0;
-        for (std::size_t e = 0; e < TileBoxes::most; e += 8) {
-            std::uint64_t eight;  // bytes that are 0 or 1; the product moves the k-th of them to bit 56 + k
-            std::memcpy(&eight, meets.data() + e, sizeof eight);
-            out |= (eight * 0x0102040810204080) >> 56 << e;
+        for (std::size_t e = 0; e < TileBoxes::most; e += sizeof(SixteenBytes)) {
+            SixteenBytes meets = ~SixteenBytes{};
+            for (std::size_t k = 0; k < Axes; ++k) {
+                SixteenBytes min, max;
+                std::memcpy(&min, boxes->min[First + k].data() + e, sizeof min);
+                std::memcpy(&max, boxes->max[First + k].data() + e, sizeof max);
+                meets &= SixteenBytes(min <= to[k]) & SixteenBytes(max >= from[k]);
+            }
+            out |= std::uint64_t{bits_of(meets)} << e;
         }
         return out & alive;
     }

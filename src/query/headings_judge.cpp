@@ -15,6 +15,7 @@ HeadingsJudge::HeadingsJudge(const Judge::Impl& shared, int headings, double max
     : has_footing_(shared.footing.has_value())
 {
     for (int k = 0; k < headings; ++k) at_heading_.emplace_back(shared, heading_of(k, headings), max_height);
+    for (PoseJudge& judge : at_heading_) judge.share_search(at_heading_.front());
     if (!shared.space) return;
     every_yaw_.emplace(shared.space->impl());
     every_yaw_->set_every_yaw();

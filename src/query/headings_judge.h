@@ -25,6 +25,8 @@ public:
     /// Judges a pose at all headings. `column` must be the column at its x and y. Adds the number of exact checks to
     /// `exact_checks`.
     VerdictTally judge(const ColumnView& column, const Vec3& position, std::uint64_t& exact_checks);
+    /// Says that many of the next poses are in this rectangle: their exact checks share the search for tiles.
+    void expect(const Rect& places) { at_heading_.front().expect(places); }
 
 private:
     std::deque<PoseJudge> at_heading_;  // a deque never moves its elements

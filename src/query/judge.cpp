@@ -70,6 +70,10 @@ bool is_submerged(double ground, double water, double max_water_depth)
     return water >= ground - touch_tolerance && water <= ground + max_water_depth + touch_tolerance;
 }
 
+/// Returns whether an exact check of the robot takes less time than a look at fine cells of the mask that have several
+/// intervals: it is fast to compare a box with a triangle, and there is only one box.
+bool is_one_box(const Robot& robot) { return robot.parts.size() == 1 && robot.parts[0].shape.kind == ShapeKind::Box; }
+
 /// Returns how far an obstructed robot can be raised, or from where it can fall.
 std::string obstruction(const SettledPose& pose, const StandLimits& limits)
 {
@@ -145,6 +149,7 @@ PoseJudge::PoseJudge(const Judge::Impl& shared, double yaw, double max_height)
       rotation_(rotation_from_rpy(0, 0, yaw)), yaw_(yaw)
 {
     if (shared.space) mask_.emplace(shared.space->impl(), yaw);
+    if (mask_ && is_one_box(shared.robot)) mask_->leave_layered_cells();
     if (footing_) footing_->set_rotation(rotation_);
 }
 
@@ -251,10 +256,13 @@ void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const C
 {
     z_.resize(x.size());
     proofs_.resize(x.size());
+    const Map& map = shared_.map;
+    const bool are_within = map.z_limits.is_unlimited() && is_within(map, {x.front(), y, 0}) &&
+                            is_within(map, {x.back(), y, 0});
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto& [terrain, water] = ground[i];
         z_[i] = terrain + offset;
-        if (!is_within(shared_.map, {x[i], y, z_[i]}))
+        if (!are_within && !is_within(map, {x[i], y, z_[i]}))
             out[i] = {Verdict::Outside, false};
         else if (is_submerged(terrain, water, shared_.options.max_water_depth))
             out[i] = {Verdict::Submerged, false};

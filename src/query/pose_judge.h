@@ -49,6 +49,11 @@ public:
     void set_rotation(double yaw);
     void set_rotation(const Mat3& rotation);
 
+    /// Says that many of the next poses are in this rectangle: their exact checks share the search for tiles.
+    void expect(const Rect& places) { checker_.expect(places); }
+    /// From now on, shares this search with another judge, for poses at the same places.
+    void share_search(const PoseJudge& with) { checker_.share_tiles(with.checker_); }
+
     /// From now on, the mask only uses coarse cells, and more poses are checked exactly: for few poses, far apart.
     void use_coarse_cells()
     {

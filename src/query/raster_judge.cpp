@@ -40,15 +40,17 @@ void RasterJudge::judge_rows(int first, std::span<RasterRow> out) const
         for (RasterRow& row : out) row.poses.reserve(std::size_t(grid_.cols));  // one layer for each column, mostly
     for (int col = 0; col < grid_.cols; col += block_) {
         const int cols = std::min(block_, grid_.cols - col);
-        if (area_.misses({grid_.x_of(col), grid_.y_of(first), grid_.x_of(col + cols - 1),
-                          grid_.y_of(first + int(out.size()) - 1)}))
-            continue;
+        const Rect block{grid_.x_of(col), grid_.y_of(first), grid_.x_of(col + cols - 1),
+                         grid_.y_of(first + int(out.size()) - 1)};
+        if (area_.misses(block)) continue;
         if (options_.height_check)
             worker.columns.set(shared_.map.geometry,
                                {grid_.x0, grid_.y0, grid_.step, col, first, cols, int(out.size())});
-        if (worker.stand && block_ < most_columns)
-            worker.stand->expect({grid_.x_of(col), grid_.y_of(first), grid_.x_of(col + cols - 1),
-                                  grid_.y_of(first + int(out.size()) - 1)});
+        if (worker.stand && block_ < most_columns) worker.stand->expect(block);
+        if (options_.dims == 2 && worker.columns.are_dense()) {  // else poses are too far apart, also in height
+            if (worker.judge) worker.judge->expect(block);
+            if (worker.at_headings) worker.at_headings->expect(block);
+        }
         for (int i = 0; i < cols; ++i) worker.x[std::size_t(i)] = grid_.x_of(col + i);
         for (int j = 0; j < int(out.size()); ++j)
             judge_row(worker, std::span(worker.x).first(std::size_t(cols)), j, grid_.y_of(first + j),
