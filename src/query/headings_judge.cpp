@@ -15,7 +15,10 @@ HeadingsJudge::HeadingsJudge(const Judge::Impl& shared, int headings, double max
     : has_footing_(shared.footing.has_value())
 {
     for (int k = 0; k < headings; ++k) at_heading_.emplace_back(shared, heading_of(k, headings), max_height);
-    for (PoseJudge& judge : at_heading_) judge.share_search(at_heading_.front());
+    for (PoseJudge& judge : at_heading_) {
+        judge.share_search(at_heading_.front());
+        judge.leave_layered_cells();
+    }
     if (!shared.space) return;
     every_yaw_.emplace(shared.space->impl());
     every_yaw_->set_every_yaw();
@@ -32,9 +35,13 @@ VerdictTally HeadingsJudge::judge(const ColumnView& column, const Vec3& position
         add(on_ground.verdict, at_heading_.size());
         return out;
     }
-    const bool is_free = every_yaw_ && every_yaw_->proof_of(position) == Proof::Free;
-    if (is_free && !has_footing_) {
-        add(Verdict::Valid, at_heading_.size());
+    Proof at_every_yaw = Proof::Candidate;
+    if (every_yaw_)
+        at_every_yaw = every_yaw_->is_pierced(column.spans, position.z()) ? Proof::Blocked
+                                                                          : every_yaw_->proof_of(position);
+    const bool is_free = at_every_yaw == Proof::Free;
+    if (at_every_yaw == Proof::Blocked || (is_free && !has_footing_)) {
+        add(is_free ? Verdict::Valid : Verdict::Collision, at_heading_.size());
         return out;
     }
     for (PoseJudge& judge : at_heading_) {

@@ -70,9 +70,16 @@ bool is_submerged(double ground, double water, double max_water_depth)
     return water >= ground - touch_tolerance && water <= ground + max_water_depth + touch_tolerance;
 }
 
-/// Returns whether an exact check of the robot takes less time than a look at fine cells of the mask that have several
-/// intervals: it is fast to compare a box with a triangle, and there is only one box.
-bool is_one_box(const Robot& robot) { return robot.parts.size() == 1 && robot.parts[0].shape.kind == ShapeKind::Box; }
+/// Returns whether exact checks take little time: the robot is one box, which is compared fast with triangles, and
+/// nearly all elements of the scene are triangles.
+bool has_fast_checks(const Map& map, const Robot& robot)
+{
+    constexpr std::uint64_t few = 16;  // one primitive for so many triangles
+    std::uint64_t primitives = 0;
+    for (const LabelCount& label : map.geometry.labels()) primitives += label.primitives;
+    return robot.parts.size() == 1 && robot.parts[0].shape.kind == ShapeKind::Box &&
+           primitives * few <= map.geometry.element_count();
+}
 
 /// Returns how far an obstructed robot can be raised, or from where it can fall.
 std::string obstruction(const SettledPose& pose, const StandLimits& limits)
@@ -98,8 +105,8 @@ std::string friction_reason(const SettledPose& pose, const Robot& robot, double 
 
 Judge::Impl::Impl(Map map_, Robot robot_, const JudgeOptions& options_)
     : map(std::move(map_)), robot(checked(std::move(robot_))), options(checked(options_, robot)),
-      checker(checker_of(map, robot, options)), space(mask_of(map, robot, options)),
-      footing(footing_of(map, robot, options))
+      checker(checker_of(map, robot, options)), are_checks_fast(has_fast_checks(map, robot)),
+      space(mask_of(map, robot, options)), footing(footing_of(map, robot, options))
 {
 }
 
@@ -149,7 +156,6 @@ PoseJudge::PoseJudge(const Judge::Impl& shared, double yaw, double max_height)
       rotation_(rotation_from_rpy(0, 0, yaw)), yaw_(yaw)
 {
     if (shared.space) mask_.emplace(shared.space->impl(), yaw);
-    if (mask_ && is_one_box(shared.robot)) mask_->leave_layered_cells();
     if (footing_) footing_->set_rotation(rotation_);
 }
 
@@ -169,6 +175,11 @@ void PoseJudge::set_rotation(const Mat3& rotation)
     rotation_ = rotation;
     if (mask_) mask_->set_rotation(rotation_);
     if (footing_) footing_->set_rotation(rotation_);
+}
+
+void PoseJudge::leave_layered_cells()
+{
+    if (mask_ && shared_.are_checks_fast) mask_->leave_layered_cells();
 }
 
 Judgement PoseJudge::judge(const ColumnView& column, const Vec3& position, bool with_hit)

@@ -60,6 +60,10 @@ public:
         if (mask_) mask_->use_coarse_cells();
     }
 
+    /// From now on, an exact check takes the place of a look at fine cells that have several intervals, if checks are
+    /// fast: for poses beside each other, not above each other.
+    void leave_layered_cells();
+
     /// Returns the verdict on a pose, and its ground. `column` must be the column at its x and y. `with_hit` adds what
     /// the robot collides with; this needs an exact check.
     Judgement judge(const ColumnView& column, const Vec3& position, bool with_hit = false);
@@ -132,6 +136,7 @@ struct Judge::Impl {
     const Robot robot;
     const JudgeOptions options;
     const CollisionChecker checker;
+    const bool are_checks_fast;            ///< comparing the robot with all that is near takes little time
     const std::optional<FreeSpace> space;  ///< empty: every pose is checked exactly
     const std::optional<Footing> footing;  ///< empty: footings are not examined; each PoseJudge has its own copy
     mutable PerThread<PoseJudge> pose_judges{[this] { return PoseJudge(*this, 0); }};  ///< for calls with one pose

@@ -76,6 +76,7 @@ private:
                 at_headings.emplace(raster.shared_, raster.headings_, raster.max_height());
             else
                 judge.emplace(raster.shared_, raster.options_.yaw, raster.max_height());
+            if (judge && raster.options_.dims == 2) judge->leave_layered_cells();
         }
     };
 

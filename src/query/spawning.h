@@ -177,7 +177,7 @@ struct DrawThread {
     Columns columns;           ///< of a chunk of draws
     std::vector<Vec2> places;  ///< of these draws
 
-    DrawThread(const Judge::Impl& shared, double yaw) : judge(shared, yaw) {}
+    DrawThread(const Judge::Impl& shared, double yaw) : judge(shared, yaw) { judge.leave_layered_cells(); }
 };
 
 /// Returns for each index its place in `order`.
