@@ -3,6 +3,7 @@
 #include "base/rect.h"
 #include "geometry/geometry_impl.h"
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -81,7 +82,8 @@ private:
     Bounds last_;             ///< the last box
     std::vector<Near> near_;  ///< a few of them may not meet known_
     std::optional<Rect> expected_;
-    // Of the expected rectangle. Square bins, seen from above; those at the rim have everything beyond it, too:
+    // The tiles of the expected rectangle, in square bins seen from above. The bins at its rim also have what is
+    // beyond.
     bool is_binned_ = false;
     double bins_per_metre_ = 0;
     std::uint32_t cols_ = 1, rows_ = 1;
