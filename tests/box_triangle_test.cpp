@@ -60,10 +60,10 @@ Triangle3 random_triangle(std::mt19937& random, const Vec3& half)
     return out;
 }
 
-/// Returns whether no angle of the triangle is very small, and no edge is nearly, but not exactly, parallel to an axis.
-bool is_regular(const Triangle3& triangle)
+/// Returns whether no angle of the triangle is very small, and no edge is nearly, but not exactly, parallel to an axis:
+/// angles are at least `least`, rad.
+bool is_regular(const Triangle3& triangle, double least = 1e-6)
 {
-    constexpr double least = 1e-6;  // rad
     double longest = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 edge = triangle[(k + 1) % 3] - triangle[k];
@@ -121,4 +121,85 @@ TEST_CASE("the fast test of a box and a triangle knows touching, thin and flat c
     // Only the cross product of an edge of the box and an edge of the triangle separates these.
     CHECK(axis_test({1, 1, 1}, {Vec3(1.6, 0.3, 2), Vec3(0.3, 1.6, -2), Vec3(9, 9, 0)}) == AxisTest::Overlap);
     CHECK(axis_test({1, 1, 1}, {Vec3(2.2, 0, 2), Vec3(0, 2.2, -2), Vec3(9, 9, 0)}) == AxisTest::Apart);
+}
+
+TEST_CASE("the fast test of four triangles is right wherever it claims something, and mostly clear for small triangles")
+{
+    constexpr double margin = FreeSpace::margin;
+    std::mt19937 random(2);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> size(0.05, 2);
+    int apart = 0, overlap = 0, small = 0, clear = 0;
+    for (int n = 0; n < 75000; ++n) {
+        const Vec3 half(size(random), size(random), size(random));
+        const Vec3 origin = 1000 * Vec3(normal(random), normal(random), normal(random));
+        Pose origin_from_box{Vec3(normal(random), normal(random), normal(random)), Mat3::Identity()};
+        if (n % 2 == 0)
+            origin_from_box.rotation = Eigen::Quaterniond(normal(random), normal(random), normal(random),
+                                                          normal(random))
+                                           .normalized()
+                                           .toRotationMatrix();
+        std::array<Triangle3, FourTriangles::width> triangles, placed;
+        std::array<std::array<const Vec3*, 3>, FourTriangles::width> corners;
+        for (std::size_t t = 0; t < triangles.size(); ++t) {
+            triangles[t] = random_triangle(random, half);
+            for (std::size_t k = 0; k < 3; ++k) {
+                placed[t][k] = origin + (origin_from_box.rotation * triangles[t][k] + origin_from_box.position);
+                corners[t][k] = &placed[t][k];
+            }
+        }
+        const FourTriangles::Marks marks = FourTriangles(corners, origin).compare(FourBoxes(half, origin_from_box));
+        if ((marks.apart & marks.overlap) != 0 || ((marks.apart | marks.overlap) >> FourTriangles::width) != 0)
+            FAIL("marks that contradict each other: case " << n);
+        for (std::size_t t = 0; t < triangles.size(); ++t) {
+            const auto meets_grown_by = [&](double by) { return meets(half + Vec3::Constant(by), triangles[t]); };
+            const bool is_apart = (marks.apart >> t & 1) != 0, is_overlap = (marks.overlap >> t & 1) != 0;
+            if (is_apart && meets_grown_by(margin / 2)) FAIL("apart, but they meet: case " << n);
+            if (is_overlap && !meets_grown_by(-margin)) FAIL("overlap, but they do not: case " << n);
+            apart += is_apart;
+            overlap += is_overlap;
+            const auto& [a, b, c] = triangles[t];
+            const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+            if (longest > 3 || longest < 0.1 || !is_regular(triangles[t], 0.1)) continue;
+            ++small;
+            clear += is_apart || is_overlap;
+        }
+    }
+    CAPTURE(apart, overlap, small, clear);
+    CHECK(apart > 50000);
+    CHECK(overlap > 30000);
+    CHECK(small > 4000);
+    CHECK(clear > 0.9 * small);
+}
+
+TEST_CASE("the fast test of four triangles knows touching, thin and flat cases")
+{
+    const FourBoxes box({0.5, 0.3, 0.2}, {});
+    const auto test = [&](const Triangle3& triangle) {
+        const std::array<const Vec3*, 3> corners{&triangle[0], &triangle[1], &triangle[2]};
+        const auto [apart, overlap] = FourTriangles({corners, corners, corners, corners}, Vec3::Zero()).compare(box);
+        CHECK((apart == 0 || apart == 15));
+        CHECK((overlap == 0 || overlap == 15));
+        return apart != 0 ? AxisTest::Apart : overlap != 0 ? AxisTest::Overlap : AxisTest::Unclear;
+    };
+    const auto at_height = [&](double z) { return test({Vec3(-1, -1, z), Vec3(1, -1, z), Vec3(0, 1, z)}); };
+    CHECK(at_height(0) == AxisTest::Overlap);
+    CHECK(at_height(0.199) == AxisTest::Overlap);
+    CHECK(at_height(0.2) == AxisTest::Unclear);
+    CHECK(at_height(0.20001) == AxisTest::Unclear);
+    CHECK(at_height(0.201) == AxisTest::Apart);
+    CHECK(test({Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}) == AxisTest::Unclear);
+    CHECK(test({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)}) == AxisTest::Unclear);
+    CHECK(test({Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(2, 0, 1)}) == AxisTest::Apart);
+    const double nan = std::nan(""), huge = 1e30;
+    CHECK(test({Vec3(nan, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}) == AxisTest::Unclear);
+    CHECK(test({Vec3(-huge, -huge, 0), Vec3(huge, -huge, 0), Vec3(0, huge, 0)}) == AxisTest::Unclear);
+    // Only the cross product of an edge of the box and an edge of the triangle separates these.
+    const FourBoxes cube({1, 1, 1}, {});
+    const auto compared = [&](const Triangle3& triangle) {
+        const std::array<const Vec3*, 3> corners{&triangle[0], &triangle[1], &triangle[2]};
+        return FourTriangles({corners, corners, corners, corners}, Vec3::Zero()).compare(cube);
+    };
+    CHECK(compared({Vec3(1.6, 0.3, 2), Vec3(0.3, 1.6, -2), Vec3(9, 9, 0)}).overlap == 15);
+    CHECK(compared({Vec3(2.2, 0, 2), Vec3(0, 2.2, -2), Vec3(9, 9, 0)}).apart == 15);
 }

@@ -206,6 +206,26 @@ TEST_CASE("the proofs of a row are true, and the same as those of its poses one 
     for (const std::size_t count : proofs) CHECK(count > 1000);
 }
 
+TEST_CASE("the highest values of windows of columns are those of a plain search")
+{
+    constexpr int side = BoundsTile::side;
+    for (int wide = 1; wide <= RowMaxima::widest; ++wide) {
+        Draw draw(std::uint64_t(wide), 0);
+        RowMaxima::Values values;
+        for (std::uint16_t& value : values) value = std::uint16_t(draw.uniform(0, 65536));
+        RowMaxima maxima;
+        maxima.set(values, wide);
+        for (int first = -wide; first < side; ++first)
+            for (int last = first + wide - 1; last <= first + wide; ++last) {
+                if (last < 0) continue;
+                const auto highest = std::max_element(values.begin() + std::max(first, 0),
+                                                      values.begin() + std::min(last + 1, side));
+                CAPTURE(wide, first, last);
+                REQUIRE(maxima.highest(first, last) == *highest);
+            }
+    }
+}
+
 TEST_CASE("footprints bound a part from outside and from inside")
 {
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {

@@ -26,6 +26,16 @@ inline std::uint64_t bits_between(int first, int last)
 /// Sixteen bytes in one register. The type is an extension of GCC and clang.
 using SixteenBytes = std::uint8_t __attribute__((vector_size(16)));
 
+/// Returns by how much each byte of `a` exceeds that of `b`; 0 where it does not.
+inline SixteenBytes excess(const SixteenBytes& a, const SixteenBytes& b)
+{
+#ifdef __SSE2__
+    return SixteenBytes(_mm_subs_epu8(__m128i(a), __m128i(b)));
+#else
+    return SixteenBytes(a > b) & (a - b);
+#endif
+}
+
 /// Returns a bit for each byte, the first one for byte 0. Each byte is 0 or 255.
 inline std::uint32_t bits_of(const SixteenBytes& bytes)
 {

@@ -74,4 +74,110 @@ AxisTest axis_test(const Vec3& half, const std::array<Vec3, 3>& corners)
     return gaps.is_apart ? AxisTest::Apart : gaps.overlaps ? AxisTest::Overlap : AxisTest::Unclear;
 }
 
+FourBoxes::FourBoxes(const Vec3& half, const Pose& pose)
+{
+    const auto three = [](const Vec3& of) { return Three{all(float(of.x())), all(float(of.y())), all(float(of.z()))}; };
+    half_ = three(half);
+    for (int axis = 0; axis < 3; ++axis) axes_[std::size_t(axis)] = three(pose.rotation.col(axis));
+    centre_ = three(pose.rotation.transpose() * pose.position);
+    size_ = all(float(half.sum() + pose.position.norm()));
+}
+
+FourTriangles::FourTriangles(const std::array<std::array<const Vec3*, 3>, width>& corners, const Vec3& origin) : size_{}
+{
+    for (std::size_t k = 0; k < 3; ++k) {
+        Four sum{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto seen = [&](std::size_t triangle) {
+                return float((*corners[triangle][k])[int(axis)] - origin[int(axis)]);
+            };
+            corners_[k][axis] = Four{seen(0), seen(1), seen(2), seen(3)};
+            sum += magnitude(corners_[k][axis]);
+        }
+        size_ = greatest(size_, sum);
+    }
+}
+
+namespace {
+
+using Three = std::array<Four, 3>;
+
+Three difference(const Three& a, const Three& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Four dot(const Three& a, const Three& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Three smaller(const Three& a, const Three& b) { return {least(a[0], b[0]), least(a[1], b[1]), least(a[2], b[2])}; }
+Three larger(const Three& a, const Three& b)
+{
+    return {greatest(a[0], b[0]), greatest(a[1], b[1]), greatest(a[2], b[2])};
+}
+Three magnitudes(const Three& a) { return {magnitude(a[0]), magnitude(a[1]), magnitude(a[2])}; }
+
+/// Does the same as Gaps for four triangles.
+class FourGaps {
+public:
+    /// Adds an axis whose length is at most `length`. `noise` is larger than the rounding error of the gap.
+    void add(const Four& gap, const Four& length, const Four& noise)
+    {
+        const Four least = float(least_depth) * length + noise;
+        apart |= gap > least;
+        overlap &= gap < -least;
+    }
+    /// The same for an axis that proves nothing if its length is 0.
+    void add_cross_product(const Four& gap, const Four& length, const Four& noise)
+    {
+        const Four least = float(least_depth) * length + noise;
+        apart |= gap > least;
+        overlap &= (gap < -least) | (length == 0);
+    }
+    bool are_apart() const { return bits_of(apart, apart) == 255; }
+
+    FourMasks apart{}, overlap = ~FourMasks{};
+};
+
+}  // namespace
+
+/// The rounding errors follow from that of one operation, 2^-24 of its result. With all coordinates at most `size`, and
+/// those of edges at most `longest`, they are below 6 size 2^-24 for a corner, 14 size 2^-24 for an edge, and below
+/// 80 size (size + longest) 2^-24 for a cross product with an edge and its gap; the gap of the triangle's normal, which
+/// is one more product, has `longest` times this error.
+FourTriangles::Marks FourTriangles::compare(const FourBoxes& box) const
+{
+    std::array<Three, 3> seen, edges;  // from the middle of the box, along its axes
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            seen[k][axis] = dot(box.axes_[axis], corners_[k]) - box.centre_[axis];
+    Four longest{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        edges[k] = difference(seen[(k + 1) % 3], seen[k]);
+        const Three by = magnitudes(edges[k]);
+        longest = greatest(greatest(longest, by[0]), greatest(by[1], by[2]));
+    }
+    constexpr float rounding = 0x1p-24F;
+    const Four size = size_ + box.size_, noise = 96 * rounding * size * (size + longest);
+    FourGaps gaps;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Four low = least(least(seen[0][axis], seen[1][axis]), seen[2][axis]),
+                   high = greatest(greatest(seen[0][axis], seen[1][axis]), seen[2][axis]), half = box.half_[axis];
+        gaps.add(greatest(low - half, -half - high), all(1), 16 * rounding * size);
+    }
+    const Three &p = edges[0], &q = edges[1],
+                normal{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]},
+                steep = magnitudes(normal);
+    gaps.add(magnitude(dot(normal, seen[0])) - dot(steep, box.half_), steep[0] + steep[1] + steep[2], noise * longest);
+    if (!gaps.are_apart()) {
+        // Both ends of an edge have the same coordinate on its cross product with an edge of the box. The triangle's
+        // third corner lies the triangle's normal away from them.
+        const Three down = smaller(normal, {}), up = larger(normal, {});
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Three &from = seen[k], &to = seen[(k + 1) % 3], by = magnitudes(edges[k]);
+            for (std::size_t u = 0; u < 3; ++u) {
+                const std::size_t v = (u + 1) % 3, w = (u + 2) % 3;
+                const Four end = from[u] * to[v] - from[v] * to[u], reach = box.half_[u] * by[v] + box.half_[v] * by[u];
+                gaps.add_cross_product(greatest(end - up[w] - reach, down[w] - end - reach), by[u] + by[v], noise);
+            }
+        }
+    }
+    const std::uint32_t marks = bits_of(gaps.apart, gaps.overlap & ~gaps.apart);
+    return {marks & 15, marks >> 4};
+}
+
 }  // namespace spawnfield

@@ -83,11 +83,14 @@ struct PlacedPart {
     const CheckedPart* part;
     Transform robot_from_shape;
     Bounds bounds;
+    FourBoxes box;  ///< the bounding box along the shape's axes
 };
 
 namespace {
 
 Bounds moved(const Bounds& box, const Vec3& by) { return {box.min + by, box.max + by}; }
+
+bool is_box(const PlacedPart& placed) { return placed.part->bounds_shape.kind == ShapeKind::Box; }
 
 /// Compares a part with a triangle by a fast test, which decides most of the triangles near a robot without FCL. FCL
 /// must decide if the part and the triangle nearly touch, because its answer depends on its own tolerance. The test
@@ -99,7 +102,7 @@ AxisTest axis_test_of(const PlacedPart& placed, const std::array<Vec3, 3>& corne
         seen[k] = placed.robot_from_shape.linear().transpose() * (corners[k] - placed.robot_from_shape.translation()) -
                   placed.part->box_centre;
     const AxisTest result = axis_test(placed.part->box_half, seen);
-    return result == AxisTest::Overlap && placed.part->bounds_shape.kind != ShapeKind::Box ? AxisTest::Unclear : result;
+    return result == AxisTest::Overlap && !is_box(placed) ? AxisTest::Unclear : result;
 }
 
 }  // namespace
@@ -123,26 +126,61 @@ struct CollisionChecker::Impl {
         }
     }
 
-    bool element_meets(const Tile& tile, std::uint32_t element, const std::vector<PlacedPart>& placed,
-                       const Vec3& origin) const
-    {
-        return tile.is_triangle(element) ? triangle_meets(tile, element, placed, origin)
-                                         : primitive_meets(tile, element, placed, origin);
-    }
-
-    bool triangle_meets(const Tile& tile, std::uint32_t triangle, const std::vector<PlacedPart>& placed,
-                        const Vec3& origin) const
+    bool meets_triangle(const PlacedPart& placed, const Tile& tile, std::uint32_t triangle, const Vec3& origin) const
     {
         std::array<Vec3, 3> corners = tile.corners(triangle);
         for (Vec3& corner : corners) corner -= origin;
-        for (const PlacedPart& part : placed) {
-            const AxisTest result = fcl_only ? AxisTest::Unclear : axis_test_of(part, corners);
-            if (result == AxisTest::Overlap) return true;
-            if (result == AxisTest::Unclear && overlap(tile.box(triangle), moved(part.bounds, origin)) &&
-                narrow_phase.meets_triangle(*part.part->body, part.robot_from_shape, corners))
-                return true;
+        const AxisTest result = fcl_only ? AxisTest::Unclear : axis_test_of(placed, corners);
+        if (result != AxisTest::Unclear) return result == AxisTest::Overlap;
+        return overlap(tile.box(triangle), moved(placed.bounds, origin)) &&
+               narrow_phase.meets_triangle(*placed.part->body, placed.robot_from_shape, corners);
+    }
+
+    /// Lowers `best` to the smallest number of a part of the scene that has one of these elements of a tile and meets
+    /// the robot, if it is smaller. With `any_will_do` it stops at the first one.
+    void find_in(const Tile& tile, std::uint64_t elements, const std::vector<PlacedPart>& placed, const Vec3& origin,
+                 bool any_will_do, std::uint32_t& best) const
+    {
+        const std::uint32_t none = best;
+        const auto is_done = [&] { return any_will_do && best != none; };
+        std::array<std::uint32_t, FourTriangles::width> four;
+        std::uint32_t count = 0;
+        const auto look_at_four = [&] {
+            for_each_bit(meeting_triangles(tile, std::span(four).first(count), placed, origin),
+                         [&](std::uint32_t k) { best = std::min(best, tile.part(four[k])); });
+            count = 0;
+        };
+        for (; elements != 0 && !is_done(); elements &= elements - 1) {
+            const auto element = std::uint32_t(std::countr_zero(elements));
+            if (tile.label(element) == Label::Water || tile.part(element) >= best) continue;
+            if (!tile.is_triangle(element)) {
+                if (primitive_meets(tile, element, placed, origin)) best = tile.part(element);
+                continue;
+            }
+            four[count++] = element;
+            if (count == four.size()) look_at_four();
         }
-        return false;
+        if (count > 0 && !is_done()) look_at_four();
+    }
+
+    /// Returns a bit for each of these triangles that meets the robot.
+    std::uint32_t meeting_triangles(const Tile& tile, std::span<const std::uint32_t> triangles,
+                                    const std::vector<PlacedPart>& placed, const Vec3& origin) const
+    {
+        std::array<std::array<const Vec3*, 3>, FourTriangles::width> corners;
+        for (std::size_t k = 0; k < corners.size(); ++k)
+            corners[k] = tile.corner_pointers(triangles[std::min(k, triangles.size() - 1)]);
+        const FourTriangles seen(corners, origin);
+        const std::uint32_t asked = (1U << triangles.size()) - 1;
+        std::uint32_t met = 0;
+        for (const PlacedPart& part : placed) {
+            const FourTriangles::Marks marks = fcl_only ? FourTriangles::Marks{} : seen.compare(part.box);
+            if (is_box(part)) met |= marks.overlap & asked;
+            for_each_bit(asked & ~met & ~marks.apart, [&](std::uint32_t k) {
+                if (meets_triangle(part, tile, triangles[k], origin)) met |= 1U << k;
+            });
+        }
+        return met;
     }
 
     bool primitive_meets(const Tile& tile, std::uint32_t element, const std::vector<PlacedPart>& placed,
@@ -257,8 +295,9 @@ void PoseChecker::set_rotation(const Mat3& rotation)
     placed_.clear();
     around_ = {};
     for (const CheckedPart& part : impl_.parts) {
-        placed_.push_back(
-            {&part, transform_of(Pose{Vec3::Zero(), rotation} * part.robot_from_shape), part.bounds_at(rotation)});
+        const Pose pose = Pose{Vec3::Zero(), rotation} * part.robot_from_shape;
+        placed_.push_back({&part, transform_of(pose), part.bounds_at(rotation),
+                           FourBoxes(part.box_half, {pose.rotation * part.box_centre + pose.position, pose.rotation})});
         around_.extend(placed_.back().bounds.min);
         around_.extend(placed_.back().bounds.max);
     }
@@ -274,11 +313,7 @@ std::optional<CollisionHit> PoseChecker::find(const Pose& pose, bool any_will_do
     std::uint32_t best = CollisionHit::occupancy;  // larger than every part number: no hit yet
     const auto is_wanted = [&] { return !any_will_do || best == CollisionHit::occupancy; };
     tiles_->visit(space, [&](const Tile& tile) {
-        for_each_bit(tile.near(space), [&](std::uint32_t element) {
-            if (!is_wanted() || tile.label(element) == Label::Water) return;
-            const std::uint32_t part = tile.part(element);
-            if (part < best && impl_.element_meets(tile, element, placed_, pose.position)) best = part;
-        });
+        impl_.find_in(tile, tile.near(space), placed_, pose.position, any_will_do, best);
         return is_wanted();
     });
     if (!any_will_do || best == CollisionHit::occupancy) best = impl_.first_around(pose, column, best);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/bits.h"
+#include "base/four.h"
 #include "geometry/geometry_impl.h"
 
 #include <spawnfield/column.h>
@@ -143,21 +144,6 @@ public:
     SeenTriangle::Sides of(const Lines& lines, double y) const;
 
 private:
-    using Four = float __attribute__((vector_size(16)));  ///< four lines in one register; also an extension of clang
-    using FourMasks = decltype(Four{} < Four{});          ///< all bits of a number are equal
-
-    static Four all(float value) { return Four{value, value, value, value}; }
-    static Four least(const Four& a, const Four& b) { return a < b ? a : b; }
-    /// Returns bits 0 .. 3 from the first masks and bits 4 .. 7 from the second.
-    static std::uint32_t bits_of(const FourMasks& first, const FourMasks& second)
-    {
-        const FourMasks marks = (first & FourMasks{1, 2, 4, 8}) | (second & FourMasks{16, 32, 64, 128});
-        std::array<std::uint64_t, 2> twos;
-        std::memcpy(&twos, &marks, sizeof twos);
-        const std::uint64_t both = twos[0] | twos[1];
-        return std::uint32_t(both | both >> 32) & 255;
-    }
-
     const Place corner_;  ///< the first one, m
     float bx_, cx_;       ///< of the other corners, from the first one, m
     Four by_, cy_;        ///< in all four numbers

@@ -258,6 +258,7 @@ void Mask::open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, Op
     out.col = col;
     out.row = row;
     out.first_row = OpenTile::none;
+    out.whole_rows = no_cells;
     if (out.tile.is_empty()) {
         out.highest = {};
         out.windows = {};
@@ -477,7 +478,7 @@ bool Mask::is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& he
 
 /// Returns the cells of a row that a part covers and that the coarser pass (if there is one) did not prove free. `u` is
 /// the x of the pose, in cells from the raster's left edge.
-Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u)
+CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u)
 {
     if (!(cover.low <= cover.high)) return no_cells;
     CellRange out{floor_of(u + cover.low), floor_of(u + cover.high)};
@@ -491,6 +492,118 @@ Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const 
     return {std::max(out.first, range.first << finer), std::min(out.last, (range.last << finer) + (1 << finer) - 1)};
 }
 
+/// Returns the pass that follows the part's shape.
+Mask::Pass& Mask::second_pass(Part& part) { return part.passes[part.passes.size() > 1 ? 1 : 0]; }
+
+namespace {
+
+/// Returns the cells that meet a range, which counts in cells.
+CellRange cells_around(double low, double high) { return {floor_of(low), floor_of(high)}; }
+/// Returns the cells that are completely inside it.
+CellRange cells_inside(double low, double high) { return {ceil_of(low), floor_of(high) - 1}; }
+
+}  // namespace
+
+/// Sets `whole`, `core` and `marked` for these rows of the tile. Does nothing if they have been set already.
+void Mask::OpenTile::set_maxima(const CellRange& rows, const CellRange& inner_rows, int wide, int inner_wide)
+{
+    if (rows == whole_rows && inner_rows == core_rows && wide == whole.wide() && inner_wide == core.wide()) return;
+    whole_rows = rows;
+    core_rows = inner_rows;
+    RowMaxima::Values maxima{};
+    const auto raise = [&](int from, int to) {
+        for (int row = from; row <= to; ++row) {
+            const std::uint16_t* const tops = tile.tops + row * int(BoundsTile::side);
+            for (std::size_t c = 0; c < BoundsTile::side; ++c) maxima[c] = maxima[c] < tops[c] ? tops[c] : maxima[c];
+        }
+    };
+    raise(inner_rows.first, inner_rows.last);
+    core.set(maxima, inner_wide);
+    if (inner_rows.count() > 0) {
+        raise(rows.first, inner_rows.first - 1);
+        raise(inner_rows.last + 1, rows.last);
+    } else {
+        raise(rows.first, rows.last);
+    }
+    whole.set(maxima, wide);
+    marked = 0;
+    for (int row = rows.first; row <= rows.last; ++row)
+        marked |= tile.bounds.marks_of(std::uint32_t(row)) | tile.solids.marks_of(std::uint32_t(row));
+}
+
+/// Does for a whole row of poses what proof_of_rectangle() does for one of them: changes Plain to Clear, Hit or Unclear
+/// where the cells of this pass decide. Poses that lie near each other share the maxima of the cells. Does nothing if
+/// they are so far apart that it would take longer.
+void Mask::look_closer(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
+                       std::span<Surroundings> out)
+{
+    constexpr int side = BoundsTile::side;
+    constexpr double fewest = 2;  // poses for each tile
+    const double per_cell = 1 / raster_.levels()[pass.level].cell, up = y - raster_.y0,
+                 tiles = (x.back() - x.front()) * per_cell / side + 1;
+    if (double(std::count(out.begin(), out.end(), Surroundings::Plain)) < fewest * tiles) return;
+    const Rect reach = part.reach, core = *part.core;
+    const CellRange rows = cells_around((up + reach.low_y) * per_cell, (up + reach.high_y) * per_cell),
+                    core_rows = cells_inside((up + core.low_y) * per_cell, (up + core.high_y) * per_cell);
+    const double widest = std::floor((reach.high_x - reach.low_x) * per_cell) + 1;
+    if (widest > RowMaxima::widest || rows.first < 0 || rows.last >= int(raster_.whole_rows(pass.level))) return;
+    const int wide = int(widest), core_wide = std::max(1, int((core.high_x - core.low_x) * per_cell) - 1),
+              known_cols = int(raster_.whole_cols(pass.level));
+    const auto fits = [](const CellRange& range, int window) {  // does not only if the last bit of a number decides
+        return range.count() == window || range.count() == window + 1;
+    };
+    const double bottom = part.footprint.outer.bottom, inner_bottom = part.footprint.inner.bottom,
+                 inner_top = part.footprint.inner.top;
+    enum : std::uint8_t { Above = 1, Undecided = 2, Inside = 4 };
+    found_.assign(x.size(), &pass == &part.passes.back() ? 0 : Undecided);
+    for (int tile_row = rows.first / side; tile_row <= rows.last / side; ++tile_row) {
+        OpenTile* open = nullptr;
+        int tile_col = -1;  // of `open`
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            if (out[i] != Surroundings::Plain) continue;
+            const double right = x[i] - raster_.x0;
+            const CellRange cols = cells_around((right + reach.low_x) * per_cell, (right + reach.high_x) * per_cell),
+                            core_cols = cells_inside((right + core.low_x) * per_cell, (right + core.high_x) * per_cell);
+            if (cols.first < 0 || cols.last >= known_cols || !fits(cols, wide) ||
+                (core_cols.count() > 0 && !fits(core_cols, core_wide))) {
+                found_[i] = Above | Undecided;
+                continue;
+            }
+            for (int col = cols.first / side; col <= cols.last / side; ++col) {
+                if (col != tile_col) {
+                    open = &tile_of(pass, std::uint32_t(col), std::uint32_t(tile_row));
+                    tile_col = col;
+                    if (!open->tile.is_empty())
+                        open->set_maxima(rows.in_tile(tile_row * side), core_rows.in_tile(tile_row * side), wide,
+                                         core_wide);
+                }
+                if (open->tile.is_empty()) continue;
+                const int left = col * side;
+                if (open->are_below(open->whole.highest(cols.first - left, cols.last - left), z[i] + bottom)) continue;
+                found_[i] |= Above;
+                const CellRange there = cols.in_tile(left), core_there = core_cols.in_tile(left);
+                if ((open->marked & bits_between(there.first, there.last)) != 0) found_[i] |= Undecided;
+                if (core_there.count() <= 0) continue;
+                const std::uint16_t top = open->core.highest(core_cols.first - left, core_cols.last - left);
+                const auto value = [&](double height) { return (height - open->tile.base) * open->inverse_quantum; };
+                if (top > value(z[i] + inner_top))
+                    found_[i] |= Undecided;
+                else if (top > 0 && top >= value(z[i] + inner_bottom + open->tile.slack))
+                    found_[i] |= Inside;
+            }
+        }
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (out[i] != Surroundings::Plain || std::isnan(z[i])) continue;
+        if ((found_[i] & Above) == 0)
+            out[i] = Surroundings::Clear;
+        else if ((found_[i] & Inside) != 0)
+            out[i] = Surroundings::Hit;
+        else if ((found_[i] & Undecided) == 0)
+            out[i] = Surroundings::Unclear;
+    }
+}
+
 /// Looks at all cells under a rectangular part at once: the highest cell of each column decides. Returns nothing if the
 /// cells must be examined one by one, because some have several intervals, or are above the part, or are not known.
 std::optional<Proof> Mask::proof_of_rectangle(const Part& part, Pass& pass, const Vec3& position) const
@@ -499,10 +612,10 @@ std::optional<Proof> Mask::proof_of_rectangle(const Part& part, Pass& pass, cons
     const double per_cell = 1 / raster_.levels()[pass.level].cell, x = position.x() - raster_.x0,
                  y = position.y() - raster_.y0, z = position.z();
     const Rect &reach = part.reach, &core = *part.core;
-    const CellRange cols{floor_of((x + reach.low_x) * per_cell), floor_of((x + reach.high_x) * per_cell)},
-        rows{floor_of((y + reach.low_y) * per_cell), floor_of((y + reach.high_y) * per_cell)},
-        core_cols{ceil_of((x + core.low_x) * per_cell), floor_of((x + core.high_x) * per_cell) - 1},
-        core_rows{ceil_of((y + core.low_y) * per_cell), floor_of((y + core.high_y) * per_cell) - 1};
+    const CellRange cols = cells_around((x + reach.low_x) * per_cell, (x + reach.high_x) * per_cell),
+                    rows = cells_around((y + reach.low_y) * per_cell, (y + reach.high_y) * per_cell),
+                    core_cols = cells_inside((x + core.low_x) * per_cell, (x + core.high_x) * per_cell),
+                    core_rows = cells_inside((y + core.low_y) * per_cell, (y + core.high_y) * per_cell);
     if (cols.first < 0 || cols.last >= int(raster_.whole_cols(pass.level)) || rows.first < 0 ||
         rows.last >= int(raster_.whole_rows(pass.level)))
         return std::nullopt;
@@ -518,11 +631,8 @@ std::optional<Proof> Mask::proof_of_rectangle(const Part& part, Pass& pass, cons
             if (tile.is_empty()) continue;
             heights.set_tile(tile, open.inverse_quantum);
             // All that follows counts from the tile's first column and row.
-            const auto in_tile = [](const CellRange& range, int first) {
-                return CellRange{std::max(range.first - first, 0), std::min(range.last - first, side - 1)};
-            };
-            const CellRange c = in_tile(cols, left), r = in_tile(rows, bottom), inner_c = in_tile(core_cols, left),
-                            inner_r = in_tile(core_rows, bottom);
+            const CellRange c = cols.in_tile(left), r = rows.in_tile(bottom), inner_c = core_cols.in_tile(left),
+                            inner_r = core_rows.in_tile(bottom);
             std::uint64_t above = 0, hit = 0, beyond = 0;
             for (int next = c.first; next <= c.last; next += Sixteen::width) {
                 const int first = std::min(next, side - Sixteen::width);
@@ -627,9 +737,10 @@ bool Mask::is_in_reach(double x, double y) const
 /// Returns the proof for a part whose surroundings are not clear.
 Proof Mask::proof_near(Part& part, const Vec3& position, Surroundings surroundings)
 {
+    if (surroundings == Surroundings::Hit) return Proof::Blocked;
+    if (surroundings == Surroundings::Unclear) return Proof::Candidate;
     if (part.core && surroundings == Surroundings::Plain && !coarse_only_)
-        if (const auto proof = proof_of_rectangle(part, part.passes[part.passes.size() > 1 ? 1 : 0], position))
-            return *proof;
+        if (const auto proof = proof_of_rectangle(part, second_pass(part), position)) return *proof;
     if (position.y() != y_) set_y(position.y());
     Proof proof = Proof::Candidate;
     const Pass* coarser = nullptr;
@@ -651,6 +762,7 @@ void Mask::prove(std::span<const double> x, double y, std::span<const double> z,
     surroundings_.resize(x.size());
     for (Part& part : parts_) {
         look_around(part, part.passes.front(), x, y, z, surroundings_);
+        if (part.core && !coarse_only_) look_closer(part, second_pass(part), x, y, z, surroundings_);
         for (std::size_t i = 0; i < x.size(); ++i) {
             if (surroundings_[i] == Surroundings::Clear || out[i] == Proof::Blocked || std::isnan(z[i])) continue;
             const Proof proof = proof_near(part, {x[i], y, z[i]}, surroundings_[i]);

@@ -3,6 +3,7 @@
 #include "base/rect.h"
 #include "free_space/bounds_tile.h"
 #include "free_space/footprint.h"
+#include "free_space/row_maxima.h"
 
 #include <spawnfield/column.h>
 #include <spawnfield/free_space.h>
@@ -12,6 +13,19 @@
 #include <optional>
 
 namespace spawnfield {
+
+/// Columns or rows of cells of a raster, or of one of its tiles; both ends are included.
+struct CellRange {
+    int first, last;
+
+    bool operator==(const CellRange&) const = default;
+    int count() const { return last - first + 1; }
+    /// Returns the part of it that is in the tile which begins at `from`, counted from there.
+    CellRange in_tile(int from) const
+    {
+        return {std::max(first - from, 0), std::min(last - from, int(BoundsTile::side) - 1)};
+    }
+};
 
 struct FreeSpace::Impl {
     SolidBounds bounds;
@@ -56,7 +70,9 @@ private:
     };
     /// What the cells around a part are like. Clear: the part is above the lowest interval of each cell, and below the
     /// next one, if there is one. Plain: it is not, and each cell has one interval. Layered: a cell has several.
-    enum class Surroundings : std::uint8_t { Clear, Plain, Layered };
+    /// Only after look_closer(): Hit: something is certainly inside the part. Unclear: no cell proves anything.
+    enum class Surroundings : std::uint8_t { Clear, Plain, Layered, Hit, Unclear };
+    static constexpr CellRange no_cells{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
     struct OpenTile {
         BoundsTile tile;
         static constexpr std::uint32_t none = 0xffffffff;
@@ -72,19 +88,20 @@ private:
         /// If a column is listed: the highest top of the lowest intervals, and the lowest bottom of the second ones.
         Values floors{}, ceilings{};
         bool has_gaps = false;  ///< floors and ceilings are set for these rows
+        // For look_closer():
+        CellRange whole_rows = no_cells, core_rows = no_cells;  ///< the rows of `whole` and `core`
+        RowMaxima whole, core;
+        std::uint64_t marked = 0;  ///< a bit for each column in which a cell of whole_rows has a list of intervals
 
         void set_rows(std::uint32_t first, std::uint32_t last, int wide);
         void set_gaps();
+        void set_maxima(const CellRange& rows, const CellRange& inner_rows, int wide, int inner_wide);
         bool are_below(std::uint16_t top, double z) const
         {
             return top < (z - tile.base) * inverse_quantum || top == 0;
         }
         Surroundings around(int first_col, int last_col, double bottom, double top);
     };
-    struct CellRange {
-        int first, last;  ///< columns, inclusive
-    };
-    static constexpr CellRange no_cells{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
     struct Pass {
         std::size_t level;
         int window = 1;  ///< the number of columns that the part meets, or one more
@@ -118,6 +135,9 @@ private:
                                         double bottom, double top);
     void look_around(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
                      std::span<Surroundings> out) const;
+    static Pass& second_pass(Part& part);
+    void look_closer(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
+                     std::span<Surroundings> out);
     static bool is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     static bool is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     Proof proof_near(Part& part, const Vec3& position, Surroundings surroundings);
@@ -129,6 +149,7 @@ private:
     std::vector<Part> parts_;
     bool coarse_only_ = false, leaves_layered_ = false;
     std::vector<Surroundings> surroundings_;               ///< of the poses of a row
+    std::vector<std::uint8_t> found_;                      ///< for look_closer()
     double y_ = std::numeric_limits<double>::quiet_NaN();  ///< y of the last pose that was not clear; for pass.rows
 };
 

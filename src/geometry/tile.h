@@ -87,10 +87,11 @@ static_assert(sizeof(TilePrimitive) == 152);
 struct TileScale {
     float low, per_metre;
 
-    std::uint8_t number_of(double coordinate) const
+    std::uint8_t number_of(double coordinate) const { return std::uint8_t(place_of(coordinate)); }
+    /// Returns the number before it is rounded down; 0 for NaN.
+    double place_of(double coordinate) const
     {
-        const double number = (coordinate - double(low)) * double(per_metre);
-        return number > 0 ? std::uint8_t(std::min(number, 255.0)) : std::uint8_t(0);  // also 0 if the number is NaN
+        return std::max(0.0, std::min((coordinate - double(low)) * double(per_metre), 255.0));
     }
 };
 
@@ -141,6 +142,11 @@ struct Tile {
     {
         const auto& [a, b, c] = triangles[triangle].corners;
         return {vertices[a], vertices[b], vertices[c]};
+    }
+    std::array<const Vec3*, 3> corner_pointers(std::uint32_t triangle) const
+    {
+        const auto& [a, b, c] = triangles[triangle].corners;
+        return {&vertices[a], &vertices[b], &vertices[c]};
     }
     const TilePiece& piece(std::uint32_t triangle) const { return pieces[triangles[triangle].piece]; }
     const TilePrimitive& primitive(std::uint32_t element) const { return primitives[element - head->triangles]; }
@@ -207,21 +213,26 @@ private:
     template <std::size_t Axes, std::size_t First = 0>
     std::uint64_t marks(const std::array<double, Axes>& low, const std::array<double, Axes>& high) const
     {
+        std::array<double, Axes> first, last;
+        for (std::size_t k = 0; k < Axes; ++k) {  // without branches, so that the compiler uses vectors
+            first[k] = head->scales[First + k].place_of(low[k]);
+            last[k] = head->scales[First + k].place_of(high[k]);
+        }
         std::array<SixteenBytes, Axes> from, to;  // in all their bytes
         for (std::size_t k = 0; k < Axes; ++k) {
-            from[k] = SixteenBytes{} + head->scales[First + k].number_of(low[k]);
-            to[k] = SixteenBytes{} + head->scales[First + k].number_of(high[k]);
+            from[k] = SixteenBytes{} + std::uint8_t(int(first[k]));
+            to[k] = SixteenBytes{} + std::uint8_t(int(last[k]));
         }
         std::uint64_t out = 0;
         for (std::size_t e = 0; e < TileBoxes::most; e += sizeof(SixteenBytes)) {
-            SixteenBytes meets = ~SixteenBytes{};
+            SixteenBytes gaps{};  // 0 where boxes meet
             for (std::size_t k = 0; k < Axes; ++k) {
                 SixteenBytes min, max;
                 std::memcpy(&min, boxes->min[First + k].data() + e, sizeof min);
                 std::memcpy(&max, boxes->max[First + k].data() + e, sizeof max);
-                meets &= SixteenBytes(min <= to[k]) & SixteenBytes(max >= from[k]);
+                gaps |= excess(min, to[k]) | excess(from[k], max);
             }
-            out |= std::uint64_t{bits_of(meets)} << e;
+            out |= std::uint64_t{bits_of(SixteenBytes(gaps == 0))} << e;
         }
         return out & alive;
     }

@@ -111,7 +111,8 @@ int main(int argc, char** argv)
                                     }};
     ChosenCommand chosen{.host = &terminal};
     CLI::App app;
-    add_commands(app, command_line(argc, argv), chosen);
+    // Adding all commands takes 1.5 ms, a fifth of the time of a short command.
+    add_commands(app, command_line(argc, argv), chosen, argc > 1 ? argv[1] : "");
     add_about(app, chosen);
     const std::vector<std::string> names = command_names(app);
     if (has_unknown_command(names, argc, argv)) {

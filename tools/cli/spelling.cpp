@@ -1,5 +1,6 @@
 #include "spelling.h"
 
+#include "command.h"
 #include "common_args.h"
 
 #include <algorithm>
@@ -79,10 +80,13 @@ std::vector<std::string> option_names(const CLI::App& command)
 }
 
 /// If a command lacks an option about robots at rest, returns which commands have it. Else returns an empty text.
-std::string where_robots_settle(const CLI::App& app, const std::string& option)
+std::string where_robots_settle(const std::string& option)
 {
+    CLI::App all;
+    ChosenCommand none;
+    add_commands(all, "", none);
     std::vector<std::string> commands;
-    for (const CLI::App* const command : app.get_subcommands({}))
+    for (const CLI::App* const command : all.get_subcommands({}))
         if (const CLI::Option* const found = command->get_option_no_throw(option);
             found != nullptr && found->get_group() == help_group::rest)
             commands.push_back(command->get_name());
@@ -130,7 +134,7 @@ std::string unknown_option(const CLI::App& app)
     for (const std::string& text : command.remaining(true)) {
         if (text.size() < 2 || text[0] != '-') continue;
         const std::string name = text.substr(0, text.find('='));
-        const std::string settling = where_robots_settle(app, name);
+        const std::string settling = where_robots_settle(name);
         return name + " is not an option of " + command.get_name() +
                (settling.empty() ? suggestion(name, option_names(command)) : settling);
     }
