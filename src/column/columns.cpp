@@ -49,6 +49,13 @@ double tile_side(const Geometry& geometry)
     return area > 0 ? std::sqrt(area * TileBoxes::most / double(geometry.element_count())) : 0;
 }
 
+/// Returns the size for SeenTriangle::sides_of() of all triangles in a tile's box, for lines in it or within 1 mm.
+double size_around(const ElementBox& box)
+{
+    constexpr double more = 0.01;  // m
+    return 3 * (double(box.max[0]) - double(box.min[0]) + double(box.max[1]) - double(box.min[1]) + more);
+}
+
 /// Returns the rectangle around the places; there must be one.
 Rect rect_around(std::span<const Vec2> places)
 {
@@ -120,7 +127,7 @@ void Columns::set(const Geometry& geometry, std::span<const Vec2> places)
                 for (std::size_t i = begin; i < end; ++i) {
                     const double x = places[i].x(), y = places[i].y();
                     if (x >= box.min[0] && x <= box.max[0] && y >= box.min[1] && y <= box.max[1])
-                        add_column(tile, tile.near(x, y, x, y), Surfaces::All, x, y, slots_[i]);
+                        add_column(tile, tile.near(x, y, x, y), Surfaces::All, x, y, size_around(box), slots_[i]);
                 }
             });
         begin = end;
@@ -154,7 +161,7 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
         const auto columns = std::uint32_t(range.last_col + 1 - range.first_col) *
                              std::uint32_t(range.last_row + 1 - range.first_row);
         if (columns <= tile.elements()) {  // most elements meet no column
-            add_columns(tile, surfaces, range);
+            add_columns(tile, surfaces, range, size_around(box));
             return;
         }
         const std::uint64_t elements = tile.near(low_x, low_y, high_x, high_y);
@@ -202,7 +209,7 @@ void Columns::add_triangle(const SeenTriangle& seen, const ColumnRange& range)
 }
 
 /// Adds the hits of these columns with the elements of a tile. There are at most TileBoxes::most of them.
-void Columns::add_columns(const Tile& tile, Surfaces surfaces, const ColumnRange& range)
+void Columns::add_columns(const Tile& tile, Surfaces surfaces, const ColumnRange& range, double size)
 {
     std::array<std::uint64_t, TileBoxes::most> near_x;
     for (int i = range.first_col; i <= range.last_col; ++i)
@@ -212,14 +219,14 @@ void Columns::add_columns(const Tile& tile, Surfaces surfaces, const ColumnRange
         const std::uint64_t near_y = tile.near_y(y);
         if (near_y == 0) continue;
         for (int i = range.first_col; i <= range.last_col; ++i)
-            add_column(tile, near_x[std::size_t(i - range.first_col)] & near_y, surfaces, x_[std::size_t(i)], y,
+            add_column(tile, near_x[std::size_t(i - range.first_col)] & near_y, surfaces, x_[std::size_t(i)], y, size,
                        slots_[number(i, j)]);
     }
 }
 
-/// Adds the hits of one vertical line with these elements of a tile.
+/// Adds the hits of one vertical line with these elements of a tile. `size` is for SeenTriangle::sides_of().
 inline void Columns::add_column(const Tile& tile, std::uint64_t elements, Surfaces surfaces, double x, double y,
-                                Slot& slot)
+                                double size, Slot& slot)
 {
     for_each_bit(elements, [&](std::uint32_t element) {
         if (!counts(tile, element, surfaces)) return;
@@ -228,7 +235,7 @@ inline void Columns::add_column(const Tile& tile, std::uint64_t elements, Surfac
             return;
         }
         const SeenTriangle seen(tile, element);
-        const auto [inside, rim] = seen.sides_of(x, y);
+        const auto [inside, rim] = seen.sides_of(x, y, size);
         if (inside != 0)
             add_inside(slot, TrianglePlane(seen), x, y);
         else if (rim != 0)
@@ -325,11 +332,12 @@ void Columns::list(Slot& slot, const SurfaceHit& hit)
 /// Appends the column of a list of hits to column_.
 void Columns::complete(Slot& slot)
 {
+    order_.clear();
+    for (std::uint32_t h = slot.index; h != none; h = listed_[h].next)
+        order_.push_back(std::uint64_t{listed_[h].hit.element} << 32 | h);
+    std::sort(order_.begin(), order_.end());
     hits_.clear();
-    for (std::uint32_t h = slot.index; h != none; h = listed_[h].next) hits_.push_back(listed_[h].hit);
-    std::reverse(hits_.begin(), hits_.end());  // the list begins with the last hit, and most hits come in their order
-    std::sort(hits_.begin(), hits_.end(),
-              [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; });
+    for (const std::uint64_t both : order_) hits_.push_back(listed_[std::uint32_t(both)].hit);
     builder_.build(hits_, column_);
     end_column(slot);
 }

@@ -152,8 +152,9 @@ private:
     void look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void add_triangle(const SeenTriangle& seen, const ColumnRange& range);
-    void add_columns(const Tile& tile, Surfaces surfaces, const ColumnRange& range);
-    void add_column(const Tile& tile, std::uint64_t elements, Surfaces surfaces, double x, double y, Slot& slot);
+    void add_columns(const Tile& tile, Surfaces surfaces, const ColumnRange& range, double size);
+    void add_column(const Tile& tile, std::uint64_t elements, Surfaces surfaces, double x, double y, double size,
+                    Slot& slot);
     void add_inside(Slot& slot, const TrianglePlane& plane, double x, double y);
     void add_rim(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y);
     void add_primitive(const Tile& tile, std::uint32_t element, const ColumnRange& range);
@@ -177,7 +178,8 @@ private:
 
     // Only used while the columns are computed:
     std::vector<ListedHit> listed_;
-    std::vector<std::uint32_t> full_;  ///< the slots whose columns have hits in listed_
+    std::vector<std::uint32_t> full_;   ///< the slots whose columns have hits in listed_
+    std::vector<std::uint64_t> order_;  ///< of a column's hits: their elements, and, in the lower half, their places
     std::vector<SurfaceHit> hits_;
     ColumnBuilder builder_;
 };

@@ -47,20 +47,6 @@ std::optional<Interval> segment(const std::array<Vec3, 3>& corners, double x, do
     return joined;
 }
 
-Interval extent(const std::array<Vec3, 3>& corners, int axis)
-{
-    const double a = corners[0][axis], b = corners[1][axis], c = corners[2][axis];
-    return {std::min({a, b, c}), std::max({a, b, c})};
-}
-
-bool may_meet(const std::array<Vec3, 3>& corners, double x, double y)
-{
-    constexpr double reach = touch_tolerance;
-    const Interval along_x = extent(corners, 0), along_y = extent(corners, 1);
-    return along_x.bottom <= x + reach && along_x.top >= x - reach && along_y.bottom <= y + reach &&
-           along_y.top >= y - reach;
-}
-
 bool is_crossed(const std::array<Vec3, 3>& corners, double x, double y)
 {
     const auto& [a, b, c] = corners;
@@ -123,8 +109,10 @@ double SeenTriangle::height_at_rim(const TrianglePlane& plane, double x, double 
 
 std::optional<SurfaceHit> SeenTriangle::hit_at_rim(const TrianglePlane& plane, double x, double y) const
 {
+    constexpr double reach = touch_tolerance;
+    if (!((low_corner() <= Place(x + reach, y + reach)) && (high_corner() >= Place(x - reach, y - reach))).all())
+        return std::nullopt;
     const std::array<Vec3, 3> corners = this->corners();
-    if (!may_meet(corners, x, y)) return std::nullopt;
     SurfaceHit out = plane.hit;
     out.crosses = out.filled && is_crossed(corners, x, y);
     if (out.crosses) out.crossing = height_at_rim(plane, x, y);

@@ -78,15 +78,21 @@ public:
     /// The cross product of the vectors to two corners is twice the area of the triangle between the line and an edge.
     /// If all three clearly have the same sign, the line goes through the triangle. If two clearly have different
     /// signs, it does not. Clear lines are so far from an edge that neither rounding nor a tolerance decides.
-    Sides sides_of(double x, double y) const
+    /// `size` is at least the sum of the distances of the three corners from the line, along x and along y, m. With a
+    /// larger one, more lines are at the rim.
+    Sides sides_of(double x, double y, double size) const
     {
         const double ax = a_.x() - x, ay = a_.y() - y, bx = b_.x() - x, by = b_.y() - y, cx = c_.x() - x,
                      cy = c_.y() - y, ab = ax * by - ay * bx, bc = bx * cy - by * cx, ca = cx * ay - cy * ax,
                      low = std::min(std::min(ab, bc), ca), high = std::max(std::max(ab, bc), ca),
-                     size = std::abs(ax) + std::abs(ay) + std::abs(bx) + std::abs(by) + std::abs(cx) + std::abs(cy),
                      rim = 4 * touch_tolerance * size;
         const bool inside = (low > rim) | (high < -rim), outside = (high > rim) & (low < -rim);
         return {inside, !(inside | outside)};
+    }
+    Sides sides_of(double x, double y) const
+    {
+        const Place line(x, y);
+        return sides_of(x, y, ((a() - line).abs() + (b() - line).abs() + (c() - line).abs()).sum());
     }
 
     /// Returns the hit of a line at the rim, if it meets the triangle, whose plane is given. A vertical triangle of a

@@ -257,46 +257,50 @@ void Mask::open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, Op
     out.inverse_quantum = out.tile.is_empty() ? 0 : 1 / out.tile.quantum;
     out.col = col;
     out.row = row;
-    out.first_row = OpenTile::none;
-    out.whole_rows = no_cells;
-    if (out.tile.is_empty()) {
-        out.highest = {};
-        out.windows = {};
-    }
+    out.rows = no_cells;
+    if (out.tile.is_empty()) out.whole = {};
 }
 
-/// Sets `highest` and all that follows from it for these rows of the tile. Does nothing if it has been set for them
-/// already: poses of one row of a raster share it.
-void Mask::OpenTile::set_rows(std::uint32_t first, std::uint32_t last, int wide)
+/// Sets all that follows for these rows of the tile, and for windows of so many columns. Does nothing if it has been
+/// set for them already: poses of one row of a raster share it.
+void Mask::OpenTile::set_rows(const CellRange& all, int wide, const CellRange& inner, int inner_wide)
 {
-    if (tile.is_empty() || (first == first_row && last == last_row && wide == window)) return;
-    first_row = first;
-    last_row = last;
-    window = wide;
-    Values maxima{}, around;  // local arrays, so that the compiler uses vectors
-    listed = 0;
-    for (std::uint32_t r = first; r <= last; ++r) {
-        const std::uint16_t* const tops = tile.tops + r * BoundsTile::side;
-        for (std::size_t c = 0; c < BoundsTile::side; ++c) maxima[c] = maxima[c] < tops[c] ? tops[c] : maxima[c];
-        listed |= tile.bounds.marks_of(r);
+    if (tile.is_empty() || (all == rows && inner == core_rows && wide == whole.wide() && inner_wide == core.wide()))
+        return;
+    rows = all;
+    core_rows = inner;
+    RowMaxima::Values maxima{};
+    const auto raise = [&](int from, int to) {
+        for (int row = from; row <= to; ++row) {
+            const std::uint16_t* const tops = tile.tops + row * int(BoundsTile::side);
+            for (std::size_t c = 0; c < BoundsTile::side; ++c) maxima[c] = maxima[c] < tops[c] ? tops[c] : maxima[c];
+        }
+    };
+    if (inner.first <= inner.last) {
+        raise(inner.first, inner.last);
+        core.set(maxima, inner_wide);
+        raise(all.first, inner.first - 1);
+        raise(inner.last + 1, all.last);
+    } else {
+        if (inner != no_cells) core.set({}, inner_wide);
+        raise(all.first, all.last);
     }
-    std::copy(maxima.begin(), maxima.end(), highest.begin());
-    around = maxima;
-    for (int by = 1; by < std::min(window, int(BoundsTile::side)); ++by) {
-        const std::uint16_t* const next = highest.data() + by;
-        for (std::size_t c = 0; c < BoundsTile::side; ++c) around[c] = around[c] < next[c] ? next[c] : around[c];
+    whole.set(maxima, wide);
+    listed = filled = 0;
+    for (int row = all.first; row <= all.last; ++row) {
+        listed |= tile.bounds.marks_of(std::uint32_t(row));
+        filled |= tile.solids.marks_of(std::uint32_t(row));
     }
-    windows = around;
     has_gaps = false;
 }
 
-/// Sets `floors` and `ceilings` for the rows first_row .. last_row.
+/// Sets `floors` and `ceilings` for `rows`.
 void Mask::OpenTile::set_gaps()
 {
-    Values high_floors{}, low_ceilings;
+    RowMaxima::Values high_floors{}, low_ceilings;
     low_ceilings.fill(std::numeric_limits<std::uint16_t>::max());
-    for (std::uint32_t r = first_row; r <= last_row; ++r) {
-        Values lowest;
+    for (auto r = std::uint32_t(rows.first); r <= std::uint32_t(rows.last); ++r) {
+        RowMaxima::Values lowest;
         std::copy_n(tile.tops + r * BoundsTile::side, BoundsTile::side, lowest.begin());
         tile.bounds.visit_row(r, [&](std::uint32_t c, std::span<const QuantizedSpan> spans) {
             lowest[c] = spans[0].top;
@@ -310,29 +314,22 @@ void Mask::OpenTile::set_gaps()
     ceilings = low_ceilings;
 }
 
-/// Looks at these columns of the tile, in the rows that set_rows() got, for what lies between two heights, m.
-Mask::Surroundings Mask::OpenTile::around(int first_col, int last_col, double bottom, double top)
+/// Looks at these columns, which count from the tile's first one, in `rows`, for what lies between two heights, m.
+/// Columns beyond the tile do not count.
+Mask::Surroundings Mask::OpenTile::around(const CellRange& cols, double bottom, double top)
 {
-    const auto highest_of = [&](const auto& heights) {
-        return *std::max_element(heights.begin() + first_col, heights.begin() + last_col + 1);
-    };
-    if (are_below(highest_of(highest), bottom)) return Surroundings::Clear;
-    if ((listed & bits_between(first_col, last_col)) == 0) return Surroundings::Plain;
+    if (are_below(whole.highest(cols.first, cols.last), bottom)) return Surroundings::Clear;
+    const CellRange here = cols.in_tile(0);
+    if ((listed & bits_between(here.first, here.last)) == 0) return Surroundings::Plain;
     if (!has_gaps) set_gaps();
-    const std::uint16_t ceiling = *std::min_element(ceilings.begin() + first_col, ceilings.begin() + last_col + 1);
-    return tile.height(ceiling) > top && are_below(highest_of(floors), bottom) ? Surroundings::Clear
-                                                                               : Surroundings::Layered;
+    const auto end = here.last + 1;
+    const std::uint16_t ceiling = *std::min_element(ceilings.begin() + here.first, ceilings.begin() + end),
+                        floor = *std::max_element(floors.begin() + here.first, floors.begin() + end);
+    return tile.height(ceiling) > top && are_below(floor, bottom) ? Surroundings::Clear : Surroundings::Layered;
 }
 
-/// Returns a tile of the pass's level, after set_rows() for these rows, which count from its first one.
-Mask::OpenTile& Mask::rows_of(Pass& pass, int tile_col, int tile_row, const CellRange& rows) const
-{
-    OpenTile& open = tile_of(pass, std::uint32_t(tile_col), std::uint32_t(tile_row));
-    open.set_rows(std::uint32_t(rows.first), std::uint32_t(rows.last), pass.window);
-    return open;
-}
-
-/// Looks at the rectangle of coarse cells around the part at each pose (x[i], y, z[i]) whose z[i] is not NaN.
+/// Looks at the rectangle of coarse cells around the part at each pose (x[i], y, z[i]) whose z[i] is not NaN. A pose
+/// whose cells are not known, or lie in too many columns, is Plain.
 void Mask::look_around(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
                        std::span<Surroundings> out) const
 {
@@ -344,7 +341,7 @@ void Mask::look_around(const Part& part, Pass& pass, std::span<const double> x, 
     const int low_row = floor_of((y - raster_.y0 + reach.low_y) * per_cell),
               high_row = floor_of((y - raster_.y0 + reach.high_y) * per_cell),
               cols = int(raster_.whole_cols(pass.level)), window = pass.window;
-    const bool is_known = low_row >= 0 && high_row < int(raster_.whole_rows(pass.level));
+    const bool is_known = low_row >= 0 && high_row < int(raster_.whole_rows(pass.level)) && window <= RowMaxima::widest;
     std::fill(out.begin(), out.end(), is_known ? Surroundings::Clear : Surroundings::Plain);
     if (!is_known) return;
     for (int tile_row = low_row / side; tile_row <= high_row / side; ++tile_row) {
@@ -353,7 +350,8 @@ void Mask::look_around(const Part& part, Pass& pass, std::span<const double> x, 
         int tile_col = -1;  // of `open`
         const auto set_tile = [&](int col) {
             if (col == tile_col) return;
-            open = &rows_of(pass, col, tile_row, rows);
+            open = &tile_of(pass, std::uint32_t(col), std::uint32_t(tile_row));
+            open->set_rows(rows, window);
             tile_col = col;
         };
         for (std::size_t i = 0; i < x.size(); ++i) {
@@ -365,16 +363,15 @@ void Mask::look_around(const Part& part, Pass& pass, std::span<const double> x, 
                 continue;
             }
             set_tile(low_col / side);
-            const int first = low_col % side, last = high_col - tile_col * side;
-            if (last < side && last - first <= window &&  // most poses are decided here
-                open->are_below(std::max(open->windows[std::size_t(first)], open->highest[std::size_t(last)]), bottom))
+            const int left = tile_col * side;
+            if (high_col < left + side &&  // most poses are decided here
+                open->are_below(open->whole.highest(low_col - left, high_col - left), bottom))
                 continue;
             if (out[i] != Surroundings::Clear || std::isnan(z[i])) continue;
             const double top = z[i] + part.footprint.outer.top;
             for (int col = tile_col; out[i] == Surroundings::Clear && col <= high_col / side; ++col) {
                 set_tile(col);
-                out[i] = open->around(std::max(low_col - col * side, 0), std::min(high_col - col * side, side - 1),
-                                      bottom, top);
+                out[i] = open->around({low_col - col * side, high_col - col * side}, bottom, top);
             }
         }
     }
@@ -504,33 +501,6 @@ CellRange cells_inside(double low, double high) { return {ceil_of(low), floor_of
 
 }  // namespace
 
-/// Sets `whole`, `core` and `marked` for these rows of the tile. Does nothing if they have been set already.
-void Mask::OpenTile::set_maxima(const CellRange& rows, const CellRange& inner_rows, int wide, int inner_wide)
-{
-    if (rows == whole_rows && inner_rows == core_rows && wide == whole.wide() && inner_wide == core.wide()) return;
-    whole_rows = rows;
-    core_rows = inner_rows;
-    RowMaxima::Values maxima{};
-    const auto raise = [&](int from, int to) {
-        for (int row = from; row <= to; ++row) {
-            const std::uint16_t* const tops = tile.tops + row * int(BoundsTile::side);
-            for (std::size_t c = 0; c < BoundsTile::side; ++c) maxima[c] = maxima[c] < tops[c] ? tops[c] : maxima[c];
-        }
-    };
-    raise(inner_rows.first, inner_rows.last);
-    core.set(maxima, inner_wide);
-    if (inner_rows.count() > 0) {
-        raise(rows.first, inner_rows.first - 1);
-        raise(inner_rows.last + 1, rows.last);
-    } else {
-        raise(rows.first, rows.last);
-    }
-    whole.set(maxima, wide);
-    marked = 0;
-    for (int row = rows.first; row <= rows.last; ++row)
-        marked |= tile.bounds.marks_of(std::uint32_t(row)) | tile.solids.marks_of(std::uint32_t(row));
-}
-
 /// Does for a whole row of poses what proof_of_rectangle() does for one of them: changes Plain to Clear, Hit or Unclear
 /// where the cells of this pass decide. Poses that lie near each other share the maxima of the cells. Does nothing if
 /// they are so far apart that it would take longer.
@@ -573,16 +543,14 @@ void Mask::look_closer(const Part& part, Pass& pass, std::span<const double> x, 
                 if (col != tile_col) {
                     open = &tile_of(pass, std::uint32_t(col), std::uint32_t(tile_row));
                     tile_col = col;
-                    if (!open->tile.is_empty())
-                        open->set_maxima(rows.in_tile(tile_row * side), core_rows.in_tile(tile_row * side), wide,
-                                         core_wide);
+                    open->set_rows(rows.in_tile(tile_row * side), wide, core_rows.in_tile(tile_row * side), core_wide);
                 }
-                if (open->tile.is_empty()) continue;
                 const int left = col * side;
                 if (open->are_below(open->whole.highest(cols.first - left, cols.last - left), z[i] + bottom)) continue;
                 found_[i] |= Above;
                 const CellRange there = cols.in_tile(left), core_there = core_cols.in_tile(left);
-                if ((open->marked & bits_between(there.first, there.last)) != 0) found_[i] |= Undecided;
+                if (((open->listed | open->filled) & bits_between(there.first, there.last)) != 0)
+                    found_[i] |= Undecided;
                 if (core_there.count() <= 0) continue;
                 const std::uint16_t top = open->core.highest(core_cols.first - left, core_cols.last - left);
                 const auto value = [&](double height) { return (height - open->tile.base) * open->inverse_quantum; };
@@ -741,6 +709,7 @@ Proof Mask::proof_near(Part& part, const Vec3& position, Surroundings surroundin
     if (surroundings == Surroundings::Unclear) return Proof::Candidate;
     if (part.core && surroundings == Surroundings::Plain && !coarse_only_)
         if (const auto proof = proof_of_rectangle(part, second_pass(part), position)) return *proof;
+    if (leaves_layered_ && surroundings == Surroundings::Layered) return Proof::Candidate;
     if (position.y() != y_) set_y(position.y());
     Proof proof = Proof::Candidate;
     const Pass* coarser = nullptr;
@@ -749,7 +718,6 @@ Proof Mask::proof_near(Part& part, const Vec3& position, Surroundings surroundin
         proof = proof_of(part, pass, coarser, position.x(), position.z());
         coarser = &pass;
         if (proof != Proof::Candidate || coarse_only_) break;
-        if (leaves_layered_ && surroundings == Surroundings::Layered) break;
     }
     return proof;
 }

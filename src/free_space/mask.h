@@ -49,8 +49,8 @@ public:
     void set_every_yaw();                     ///< upright robot; proofs hold for every yaw
     /// From now on, proofs use only the coarsest cells that are useful. They read few tiles, and prove less.
     void use_coarse_cells() { coarse_only_ = true; }
-    /// From now on, where cells have several intervals (under trees, at walls), proofs use only the coarsest cells, and
-    /// prove less: for callers whose exact check takes less time than a look at fine cells one by one.
+    /// From now on, nothing is proven where cells have several intervals (under trees, at walls), unless the coarsest
+    /// ones around the part are clear: for callers whose exact check takes less time than a look at cells one by one.
     void leave_layered_cells() { leaves_layered_ = true; }
     Proof proof_of(const Vec3& position);
     /// Sets out[i] to the proof of the pose (x[i], y, z[i]), which is faster than one pose after the other. The x of
@@ -77,30 +77,22 @@ private:
         BoundsTile tile;
         static constexpr std::uint32_t none = 0xffffffff;
         std::uint32_t col = none, row = none;
-        double inverse_quantum = 0;                                  ///< of the tile
-        using Values = std::array<std::uint16_t, BoundsTile::side>;  ///< for each column of the tile's cells
-        std::uint32_t first_row = none, last_row = 0;
-        int window = 0;
-        /// The highest top in the rows first_row .. last_row of the tile. Then zeros.
-        std::array<std::uint16_t, 2 * BoundsTile::side> highest{};
-        Values windows{};          ///< the highest of `highest` in this column and the next ones, `window` in all
-        std::uint64_t listed = 0;  ///< a bit for each column in which a cell of these rows has a list of intervals
+        double inverse_quantum = 0;                       ///< of the tile
+        CellRange rows = no_cells, core_rows = no_cells;  ///< that set_rows() got
+        RowMaxima whole, core;                            ///< tops in `rows`, and in `core_rows`
+        /// A bit for each column in which a cell of `rows` has a list of intervals, or of points that are solid.
+        std::uint64_t listed = 0, filled = 0;
         /// If a column is listed: the highest top of the lowest intervals, and the lowest bottom of the second ones.
-        Values floors{}, ceilings{};
+        RowMaxima::Values floors{}, ceilings{};
         bool has_gaps = false;  ///< floors and ceilings are set for these rows
-        // For look_closer():
-        CellRange whole_rows = no_cells, core_rows = no_cells;  ///< the rows of `whole` and `core`
-        RowMaxima whole, core;
-        std::uint64_t marked = 0;  ///< a bit for each column in which a cell of whole_rows has a list of intervals
 
-        void set_rows(std::uint32_t first, std::uint32_t last, int wide);
+        void set_rows(const CellRange& all, int wide, const CellRange& inner = no_cells, int inner_wide = 1);
         void set_gaps();
-        void set_maxima(const CellRange& rows, const CellRange& inner_rows, int wide, int inner_wide);
         bool are_below(std::uint16_t top, double z) const
         {
             return top < (z - tile.base) * inverse_quantum || top == 0;
         }
-        Surroundings around(int first_col, int last_col, double bottom, double top);
+        Surroundings around(const CellRange& cols, double bottom, double top);
     };
     struct Pass {
         std::size_t level;
@@ -126,7 +118,6 @@ private:
     void cover(const Part& part, Pass& pass) const;
     void cover_rectangle(const Part& part, Pass& pass) const;
     OpenTile& tile_of(Pass& pass, std::uint32_t col, std::uint32_t row) const;
-    OpenTile& rows_of(Pass& pass, int tile_col, int tile_row, const CellRange& rows) const;
     void open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, OpenTile& out) const;
     static CellRange open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u);
     bool is_in_reach(double x, double y) const;

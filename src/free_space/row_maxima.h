@@ -20,18 +20,14 @@ public:
     void set(const Values& values, int wide)
     {
         wide_ = wide;
-        // Columns beyond the tile are zero. Some more are read together with the last ones.
-        std::array<std::uint16_t, left + BoundsTile::side + left + Eight::width> row{};
-        std::copy(values.begin(), values.end(), row.begin() + left);
-        const int first = left - wide / Eight::width * Eight::width - Eight::width;
-        const auto join = [&](int by) {
-            for (int at = first; at < left + int(BoundsTile::side); at += Eight::width)
-                Eight::highest(row.data() + at, row.data() + at + by).write(row.data() + at);
-        };
-        int joined = 1;
-        for (; 2 * joined <= wide; joined *= 2) join(joined);
-        if (joined < wide) join(wide - joined);
-        std::copy_n(row.begin(), windows_.size(), windows_.begin());
+        std::copy(values.begin(), values.end(), values_.begin() + left);
+        const int first = left - (wide / Eight::width + 1) * Eight::width;
+        for (int at = first; at < left + int(BoundsTile::side); at += Eight::width) {
+            const std::uint16_t* const from = values_.data() + at;
+            Eight highest = Eight::read(from);
+            for (int k = 1; k < wide; ++k) highest.raise(Eight::read(from + k));
+            highest.write(windows_.data() + at);
+        }
     }
 
     /// Returns the highest value of these columns, which are as many as a window has, or one more. Columns beyond the
@@ -42,25 +38,27 @@ public:
     }
 
 private:
-    static constexpr int left = BoundsTile::side + 8;  ///< columns before the tile that a window may begin in
-
     /// Eight neighbouring values in one register. The type is an extension of GCC and clang.
     struct Eight {
         static constexpr int width = 8;
         std::uint16_t __attribute__((vector_size(16))) values;
 
-        static Eight highest(const std::uint16_t* a, const std::uint16_t* b)
+        static Eight read(const std::uint16_t* from)
         {
-            Eight left, right;
-            std::memcpy(&left, a, sizeof left);
-            std::memcpy(&right, b, sizeof right);
-            return {left.values > right.values ? left.values : right.values};
+            Eight out;
+            std::memcpy(&out, from, sizeof out);
+            return out;
         }
+        void raise(const Eight& by) { values = values > by.values ? values : by.values; }
         void write(std::uint16_t* to) const { std::memcpy(to, &values, sizeof values); }
     };
 
+    static constexpr int left = BoundsTile::side +
+                                Eight::width;  ///< columns before the tile that a window may begin in
+
     int wide_ = 1;
-    std::array<std::uint16_t, left + BoundsTile::side + 1> windows_{};  ///< from `left` columns before the tile on
+    // From `left` columns before the tile on. Columns beyond the tile are zero.
+    std::array<std::uint16_t, 2 * left + BoundsTile::side> values_{}, windows_{};  ///< windows begin in their column
 };
 
 }  // namespace spawnfield
