@@ -501,6 +501,22 @@ CellRange cells_inside(double low, double high) { return {ceil_of(low), floor_of
 
 }  // namespace
 
+/// Looks at the cells around a part and at those inside it, in the rows that set_rows() got. The columns count from the
+/// tile's first one. Returns Found bits.
+std::uint8_t Mask::OpenTile::look_closer(const CellRange& cols, const CellRange& core_cols, const Footprint& part,
+                                         double z) const
+{
+    if (are_below(whole.highest(cols.first, cols.last), z + part.outer.bottom)) return 0;
+    const CellRange here = cols.in_tile(0), core_here = core_cols.in_tile(0);
+    std::uint8_t out = Above;
+    if (((listed | filled) & bits_between(here.first, here.last)) != 0) out |= Undecided;
+    if (core_here.count() <= 0) return out;
+    const std::uint16_t top = core.highest(core_cols.first, core_cols.last);
+    const auto value = [&](double height) { return (height - tile.base) * inverse_quantum; };
+    if (top > value(z + part.inner.top)) return out | Undecided;
+    return top > 0 && top >= value(z + part.inner.bottom + tile.slack) ? out | Inside : out;
+}
+
 /// Does for a whole row of poses what proof_of_rectangle() does for one of them: changes Plain to Clear, Hit or Unclear
 /// where the cells of this pass decide. Poses that lie near each other share the maxima of the cells. Does nothing if
 /// they are so far apart that it would take longer.
@@ -522,9 +538,6 @@ void Mask::look_closer(const Part& part, Pass& pass, std::span<const double> x, 
     const auto fits = [](const CellRange& range, int window) {  // does not only if the last bit of a number decides
         return range.count() == window || range.count() == window + 1;
     };
-    const double bottom = part.footprint.outer.bottom, inner_bottom = part.footprint.inner.bottom,
-                 inner_top = part.footprint.inner.top;
-    enum : std::uint8_t { Above = 1, Undecided = 2, Inside = 4 };
     found_.assign(x.size(), &pass == &part.passes.back() ? 0 : Undecided);
     for (int tile_row = rows.first / side; tile_row <= rows.last / side; ++tile_row) {
         OpenTile* open = nullptr;
@@ -545,19 +558,7 @@ void Mask::look_closer(const Part& part, Pass& pass, std::span<const double> x, 
                     tile_col = col;
                     open->set_rows(rows.in_tile(tile_row * side), wide, core_rows.in_tile(tile_row * side), core_wide);
                 }
-                const int left = col * side;
-                if (open->are_below(open->whole.highest(cols.first - left, cols.last - left), z[i] + bottom)) continue;
-                found_[i] |= Above;
-                const CellRange there = cols.in_tile(left), core_there = core_cols.in_tile(left);
-                if (((open->listed | open->filled) & bits_between(there.first, there.last)) != 0)
-                    found_[i] |= Undecided;
-                if (core_there.count() <= 0) continue;
-                const std::uint16_t top = open->core.highest(core_cols.first - left, core_cols.last - left);
-                const auto value = [&](double height) { return (height - open->tile.base) * open->inverse_quantum; };
-                if (top > value(z[i] + inner_top))
-                    found_[i] |= Undecided;
-                else if (top > 0 && top >= value(z[i] + inner_bottom + open->tile.slack))
-                    found_[i] |= Inside;
+                found_[i] |= open->look_closer(cols.from(col * side), core_cols.from(col * side), part.footprint, z[i]);
             }
         }
     }

@@ -20,10 +20,12 @@ struct CellRange {
 
     bool operator==(const CellRange&) const = default;
     int count() const { return last - first + 1; }
-    /// Returns the part of it that is in the tile which begins at `from`, counted from there.
-    CellRange in_tile(int from) const
+    /// Returns it counted from another cell.
+    CellRange from(int cell) const { return {first - cell, last - cell}; }
+    /// Returns the part of it that is in the tile which begins at `cell`, counted from there.
+    CellRange in_tile(int cell) const
     {
-        return {std::max(first - from, 0), std::min(last - from, int(BoundsTile::side) - 1)};
+        return {std::max(first - cell, 0), std::min(last - cell, int(BoundsTile::side) - 1)};
     }
 };
 
@@ -72,6 +74,9 @@ private:
     /// next one, if there is one. Plain: it is not, and each cell has one interval. Layered: a cell has several.
     /// Only after look_closer(): Hit: something is certainly inside the part. Unclear: no cell proves anything.
     enum class Surroundings : std::uint8_t { Clear, Plain, Layered, Hit, Unclear };
+    /// What look_closer() finds in the cells around a part: something above its lowest point, something of which these
+    /// cells do not say enough, and something that is certainly inside the part.
+    enum Found : std::uint8_t { Above = 1, Undecided = 2, Inside = 4 };
     static constexpr CellRange no_cells{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
     struct OpenTile {
         BoundsTile tile;
@@ -93,6 +98,8 @@ private:
             return top < (z - tile.base) * inverse_quantum || top == 0;
         }
         Surroundings around(const CellRange& cols, double bottom, double top);
+        std::uint8_t look_closer(const CellRange& cols, const CellRange& core_cols, const Footprint& part,
+                                 double z) const;
     };
     struct Pass {
         std::size_t level;
@@ -140,7 +147,7 @@ private:
     std::vector<Part> parts_;
     bool coarse_only_ = false, leaves_layered_ = false;
     std::vector<Surroundings> surroundings_;               ///< of the poses of a row
-    std::vector<std::uint8_t> found_;                      ///< for look_closer()
+    std::vector<std::uint8_t> found_;                      ///< Found bits of these poses
     double y_ = std::numeric_limits<double>::quiet_NaN();  ///< y of the last pose that was not clear; for pass.rows
 };
 

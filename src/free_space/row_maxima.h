@@ -8,8 +8,8 @@
 
 namespace spawnfield {
 
-/// The highest value of neighbouring columns of a tile. It takes the maxima of all windows of columns at once
-/// (van Herk's idea of shared maxima), so that the question for one window takes two reads.
+/// The highest value of neighbouring columns of a tile. It computes this for all windows of columns at once, eight at a
+/// time, so that the answer for one window takes two reads.
 class RowMaxima {
 public:
     using Values = std::array<std::uint16_t, BoundsTile::side>;  ///< one for each column of the tile
@@ -53,8 +53,7 @@ private:
         void write(std::uint16_t* to) const { std::memcpy(to, &values, sizeof values); }
     };
 
-    static constexpr int left = BoundsTile::side +
-                                Eight::width;  ///< columns before the tile that a window may begin in
+    static constexpr int left = BoundsTile::side + Eight::width;  ///< columns before the tile; windows may begin there
 
     int wide_ = 1;
     // From `left` columns before the tile on. Columns beyond the tile are zero.
