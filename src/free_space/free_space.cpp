@@ -271,8 +271,8 @@ void Mask::OpenTile::set_rows(const CellRange& all, int wide, const CellRange& i
     core_rows = inner;
     RowMaxima::Values maxima{};
     const auto raise = [&](int from, int to) {
-        for (int row = from; row <= to; ++row) {
-            const std::uint16_t* const tops = tile.tops + row * int(BoundsTile::side);
+        for (int r = from; r <= to; ++r) {
+            const std::uint16_t* const tops = tile.tops + r * int(BoundsTile::side);
             for (std::size_t c = 0; c < BoundsTile::side; ++c) maxima[c] = maxima[c] < tops[c] ? tops[c] : maxima[c];
         }
     };
@@ -287,9 +287,9 @@ void Mask::OpenTile::set_rows(const CellRange& all, int wide, const CellRange& i
     }
     whole.set(maxima, wide);
     listed = filled = 0;
-    for (int row = all.first; row <= all.last; ++row) {
-        listed |= tile.bounds.marks_of(std::uint32_t(row));
-        filled |= tile.solids.marks_of(std::uint32_t(row));
+    for (auto r = std::uint32_t(all.first); r <= std::uint32_t(all.last); ++r) {
+        listed |= tile.bounds.marks_of(r);
+        filled |= tile.solids.marks_of(r);
     }
     has_gaps = false;
 }
