@@ -114,19 +114,13 @@ Three magnitudes(const Three& a) { return {magnitude(a[0]), magnitude(a[1]), mag
 /// Does the same as Gaps for four triangles.
 class FourGaps {
 public:
-    /// Adds an axis whose length is at most `length`. `noise` is larger than the rounding error of the gap.
-    void add(const Four& gap, const Four& length, const Four& noise)
+    /// Adds an axis whose length is at most `length`. `noise` is larger than the rounding error of the gap. Where
+    /// `is_void` is set, the axis has no direction, and others decide.
+    void add(const Four& gap, const Four& length, const Four& noise, const FourMasks& is_void = FourMasks{})
     {
         const Four least = float(least_depth) * length + noise;
         apart |= gap > least;
-        overlap &= gap < -least;
-    }
-    /// The same for an axis that proves nothing if its length is 0.
-    void add_cross_product(const Four& gap, const Four& length, const Four& noise)
-    {
-        const Four least = float(least_depth) * length + noise;
-        apart |= gap > least;
-        overlap &= (gap < -least) | (length == 0);
+        overlap &= (gap < -least) | is_void;
     }
     bool are_apart() const { return bits_of(apart, apart) == 255; }
 
@@ -172,7 +166,8 @@ FourTriangles::Marks FourTriangles::compare(const FourBoxes& box) const
             for (std::size_t u = 0; u < 3; ++u) {
                 const std::size_t v = (u + 1) % 3, w = (u + 2) % 3;
                 const Four end = from[u] * to[v] - from[v] * to[u], reach = box.half_[u] * by[v] + box.half_[v] * by[u];
-                gaps.add_cross_product(greatest(end - up[w] - reach, down[w] - end - reach), by[u] + by[v], noise);
+                const Four length = by[u] + by[v];
+                gaps.add(greatest(end - up[w] - reach, down[w] - end - reach), length, noise, length == 0);
             }
         }
     }

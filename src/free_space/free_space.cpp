@@ -20,6 +20,11 @@ int floor_of(double value)
 }
 int ceil_of(double value) { return -floor_of(-value); }
 
+/// Returns the cells that meet a range, which counts in cells.
+CellRange cells_around(double low, double high) { return {floor_of(low), floor_of(high)}; }
+/// Returns the cells that are completely inside it.
+CellRange cells_inside(double low, double high) { return {ceil_of(low), floor_of(high) - 1}; }
+
 /// Returns the largest quantized height of a tile that is below z; 0 if there is none.
 std::uint32_t values_below(const BoundsTile& tile, double inverse_quantum, double z)
 {
@@ -338,40 +343,39 @@ void Mask::look_around(const Part& part, Pass& pass, std::span<const double> x, 
     // Copies, because the compiler cannot know that writing to `out` does not change them.
     const Rect reach = part.reach;
     const double x0 = raster_.x0, lowest = part.footprint.outer.bottom;
-    const int low_row = floor_of((y - raster_.y0 + reach.low_y) * per_cell),
-              high_row = floor_of((y - raster_.y0 + reach.high_y) * per_cell),
-              cols = int(raster_.whole_cols(pass.level)), window = pass.window;
-    const bool is_known = low_row >= 0 && high_row < int(raster_.whole_rows(pass.level)) && window <= RowMaxima::widest;
+    const CellRange rows = cells_around((y - raster_.y0 + reach.low_y) * per_cell,
+                                        (y - raster_.y0 + reach.high_y) * per_cell);
+    const int known_cols = int(raster_.whole_cols(pass.level)), window = pass.window;
+    const bool is_known = rows.first >= 0 && rows.last < int(raster_.whole_rows(pass.level)) &&
+                          window <= RowMaxima::widest;
     std::fill(out.begin(), out.end(), is_known ? Surroundings::Clear : Surroundings::Plain);
     if (!is_known) return;
-    for (int tile_row = low_row / side; tile_row <= high_row / side; ++tile_row) {
-        const CellRange rows{std::max(low_row - tile_row * side, 0), std::min(high_row - tile_row * side, side - 1)};
+    for (int tile_row = rows.first / side; tile_row <= rows.last / side; ++tile_row) {
         OpenTile* open = nullptr;
         int tile_col = -1;  // of `open`
         const auto set_tile = [&](int col) {
             if (col == tile_col) return;
             open = &tile_of(pass, std::uint32_t(col), std::uint32_t(tile_row));
-            open->set_rows(rows, window);
+            open->set_rows(rows.in_tile(tile_row * side), window);
             tile_col = col;
         };
         for (std::size_t i = 0; i < x.size(); ++i) {
             const double from_left = x[i] - x0, bottom = z[i] + lowest;
-            const int low_col = floor_of((from_left + reach.low_x) * per_cell),
-                      high_col = floor_of((from_left + reach.high_x) * per_cell);
-            if (low_col < 0 || high_col >= cols) {
+            const CellRange cols = cells_around((from_left + reach.low_x) * per_cell,
+                                                (from_left + reach.high_x) * per_cell);
+            if (cols.first < 0 || cols.last >= known_cols) {
                 out[i] = Surroundings::Plain;
                 continue;
             }
-            set_tile(low_col / side);
-            const int left = tile_col * side;
-            if (high_col < left + side &&  // most poses are decided here
-                open->are_below(open->whole.highest(low_col - left, high_col - left), bottom))
-                continue;
+            set_tile(cols.first / side);
+            const CellRange here = cols.from(tile_col * side);
+            if (here.last < side && open->are_below(open->whole.highest(here.first, here.last), bottom))
+                continue;  // most poses
             if (out[i] != Surroundings::Clear || std::isnan(z[i])) continue;
             const double top = z[i] + part.footprint.outer.top;
-            for (int col = tile_col; out[i] == Surroundings::Clear && col <= high_col / side; ++col) {
+            for (int col = tile_col; out[i] == Surroundings::Clear && col <= cols.last / side; ++col) {
                 set_tile(col);
-                out[i] = open->around({low_col - col * side, high_col - col * side}, bottom, top);
+                out[i] = open->around(cols.from(col * side), bottom, top);
             }
         }
     }
@@ -385,8 +389,8 @@ Mask::Surroundings Mask::surroundings_of(const Part& part, Pass& pass, const Vec
                  y = position.y() - raster_.y0, bottom = position.z() + part.footprint.outer.bottom,
                  top = position.z() + part.footprint.outer.top;
     const Rect& reach = part.reach;
-    const CellRange cols{floor_of((x + reach.low_x) * per_cell), floor_of((x + reach.high_x) * per_cell)},
-        rows{floor_of((y + reach.low_y) * per_cell), floor_of((y + reach.high_y) * per_cell)};
+    const CellRange cols = cells_around((x + reach.low_x) * per_cell, (x + reach.high_x) * per_cell),
+                    rows = cells_around((y + reach.low_y) * per_cell, (y + reach.high_y) * per_cell);
     if (rows.first < 0 || rows.last >= int(raster_.whole_rows(pass.level)) || cols.first < 0 ||
         cols.last >= int(raster_.whole_cols(pass.level)))
         return Surroundings::Plain;
@@ -394,9 +398,7 @@ Mask::Surroundings Mask::surroundings_of(const Part& part, Pass& pass, const Vec
         for (int col = cols.first / side * side; col <= cols.last; col += side) {
             const OpenTile& open = tile_of(pass, std::uint32_t(col / side), std::uint32_t(row / side));
             if (open.tile.is_empty()) continue;
-            const Surroundings found = surroundings_in(
-                open, {std::max(cols.first - col, 0), std::min(cols.last - col, side - 1)},
-                {std::max(rows.first - row, 0), std::min(rows.last - row, side - 1)}, bottom, top);
+            const Surroundings found = surroundings_in(open, cols.in_tile(col), rows.in_tile(row), bottom, top);
             if (found != Surroundings::Clear) return found;
         }
     return Surroundings::Clear;
@@ -492,15 +494,6 @@ CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const Pass* 
 /// Returns the pass that follows the part's shape.
 Mask::Pass& Mask::second_pass(Part& part) { return part.passes[part.passes.size() > 1 ? 1 : 0]; }
 
-namespace {
-
-/// Returns the cells that meet a range, which counts in cells.
-CellRange cells_around(double low, double high) { return {floor_of(low), floor_of(high)}; }
-/// Returns the cells that are completely inside it.
-CellRange cells_inside(double low, double high) { return {ceil_of(low), floor_of(high) - 1}; }
-
-}  // namespace
-
 /// Looks at the cells around a part and at those inside it, in the rows that set_rows() got. The columns count from the
 /// tile's first one. Returns Found bits.
 std::uint8_t Mask::OpenTile::look_closer(const CellRange& cols, const CellRange& core_cols, const Footprint& part,
@@ -531,9 +524,8 @@ void Mask::look_closer(const Part& part, Pass& pass, std::span<const double> x, 
     const Rect reach = part.reach, core = *part.core;
     const CellRange rows = cells_around((up + reach.low_y) * per_cell, (up + reach.high_y) * per_cell),
                     core_rows = cells_inside((up + core.low_y) * per_cell, (up + core.high_y) * per_cell);
-    const double widest = std::floor((reach.high_x - reach.low_x) * per_cell) + 1;
-    if (widest > RowMaxima::widest || rows.first < 0 || rows.last >= int(raster_.whole_rows(pass.level))) return;
-    const int wide = int(widest), core_wide = std::max(1, int((core.high_x - core.low_x) * per_cell) - 1),
+    if (pass.window > RowMaxima::widest || rows.first < 0 || rows.last >= int(raster_.whole_rows(pass.level))) return;
+    const int wide = pass.window, core_wide = std::max(1, int((core.high_x - core.low_x) * per_cell) - 1),
               known_cols = int(raster_.whole_cols(pass.level));
     const auto fits = [](const CellRange& range, int window) {  // does not only if the last bit of a number decides
         return range.count() == window || range.count() == window + 1;

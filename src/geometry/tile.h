@@ -87,11 +87,9 @@ static_assert(sizeof(TilePrimitive) == 152);
 struct TileScale {
     float low, per_metre;
 
-    std::uint8_t number_of(double coordinate) const { return std::uint8_t(place_of(coordinate)); }
-    /// Returns the number before it is rounded down; 0 for NaN.
-    double place_of(double coordinate) const
+    std::uint8_t number_of(double coordinate) const
     {
-        return std::max(0.0, std::min((coordinate - double(low)) * double(per_metre), 255.0));
+        return std::uint8_t(std::max(0.0, std::min((coordinate - double(low)) * double(per_metre), 255.0)));  // NaN: 0
     }
 };
 
@@ -140,8 +138,8 @@ struct Tile {
     bool is_triangle(std::uint32_t element) const { return element < head->triangles; }
     std::array<Vec3, 3> corners(std::uint32_t triangle) const
     {
-        const auto& [a, b, c] = triangles[triangle].corners;
-        return {vertices[a], vertices[b], vertices[c]};
+        const auto [a, b, c] = corner_pointers(triangle);
+        return {*a, *b, *c};
     }
     std::array<const Vec3*, 3> corner_pointers(std::uint32_t triangle) const
     {
@@ -213,15 +211,10 @@ private:
     template <std::size_t Axes, std::size_t First = 0>
     std::uint64_t marks(const std::array<double, Axes>& low, const std::array<double, Axes>& high) const
     {
-        std::array<double, Axes> first, last;
-        for (std::size_t k = 0; k < Axes; ++k) {  // without branches, so that the compiler uses vectors
-            first[k] = head->scales[First + k].place_of(low[k]);
-            last[k] = head->scales[First + k].place_of(high[k]);
-        }
         std::array<SixteenBytes, Axes> from, to;  // in all their bytes
         for (std::size_t k = 0; k < Axes; ++k) {
-            from[k] = SixteenBytes{} + std::uint8_t(int(first[k]));
-            to[k] = SixteenBytes{} + std::uint8_t(int(last[k]));
+            from[k] = SixteenBytes{} + head->scales[First + k].number_of(low[k]);
+            to[k] = SixteenBytes{} + head->scales[First + k].number_of(high[k]);
         }
         std::uint64_t out = 0;
         for (std::size_t e = 0; e < TileBoxes::most; e += sizeof(SixteenBytes)) {
