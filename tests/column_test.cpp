@@ -54,7 +54,7 @@ int different_columns(const Scene& scene, int cols)
     return out;
 }
 
-/// The same for random places, row by row, with corners of triangles among them.
+/// The same for random places, row by row, and for corners of triangles and places near them.
 int different_columns_at_places(const Scene& scene, std::uint64_t seed)
 {
     const Geometry geometry(scene);
@@ -66,8 +66,10 @@ int different_columns_at_places(const Scene& scene, std::uint64_t seed)
         for (int k = 0; k < 40; ++k)
             places.emplace_back(draw.uniform(bounds.min.x() - 0.1, bounds.max.x()), y + draw.uniform(0, 0.1));
     }
-    for (const Vec3& vertex : scene.vertices)
+    for (const Vec3& vertex : scene.vertices) {
         if (draw.unit() < 0.1) places.push_back(vertex.head<2>());
+        places.emplace_back(vertex.x() + draw.uniform(-0.3, 0.3), vertex.y() + draw.uniform(-0.3, 0.3));
+    }
     Columns columns;
     columns.set(geometry, std::span<const Vec2>());
     columns.set(geometry, places);
@@ -77,7 +79,63 @@ int different_columns_at_places(const Scene& scene, std::uint64_t seed)
     return out;
 }
 
+/// Returns the scene in UTM coordinates, on a plane of two triangles with sides of 3 km. Their tile has small
+/// triangles, too.
+Scene far_away(Scene scene)
+{
+    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(3000, 3000), {{0, 0, -1}, Mat3::Identity()}));
+    const Vec3 shift(512345.678, 4123456.789, 0);
+    for (Vec3& vertex : scene.vertices) vertex += shift;
+    for (Primitive& primitive : scene.primitives) primitive.shape.pose.position += shift;
+    return scene;
+}
+
 }  // namespace
+
+TEST_CASE("four lines and triangles that are compared at once: what is not at the rim is true")
+{
+    constexpr int rounds = 100000;
+    constexpr std::size_t width = FourPairs::width;
+    int wrong = 0, at_rim = 0;
+    for (int round = 0; round < rounds; ++round) {
+        Draw draw(round, 5);
+        const Vec2 size(std::pow(10, draw.uniform(-2, 4)), std::pow(10, draw.uniform(-2, 4)));
+        const double far = std::pow(10, draw.uniform(0, 7)), share = std::pow(10, draw.uniform(-3, 0));
+        const Vec2 corner(draw.uniform(-far, far), draw.uniform(-far, far));
+        const auto in_box = [&](double part) {  // near the first corner of the box if `part` is small
+            return Vec2(corner + part * Vec2(draw.unit() * size.x(), draw.unit() * size.y()));
+        };
+        std::array<std::array<Vec3, 3>, width> triangles;
+        std::array<Vec2, width> lines;
+        FourPairs four;
+        for (std::size_t k = 0; k < width; ++k) {
+            for (Vec3& vertex : triangles[k]) vertex << in_box(share), 0;
+            const Vec3 on_edge = triangles[k][0] + draw.unit() * (triangles[k][1] - triangles[k][0]);
+            lines[k] = draw.unit() < 0.5 ? in_box(share) : Vec2(on_edge.head<2>());
+            four.lines[k] = lines[k].data();
+            four.corners[k] = {&triangles[k][0], &triangles[k][1], &triangles[k][2]};
+        }
+        const auto [inside, rim] = four.sides(FourPairs::rim_in(size.x(), size.y()));
+        for (std::size_t k = 0; k < width; ++k) {
+            std::array<long double, 3> cross;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const Vec3 &a = triangles[k][c], &b = triangles[k][(c + 1) % 3];
+                const auto from_line = [&](const Vec3& vertex, int axis) {
+                    return static_cast<long double>(vertex[axis]) - lines[k][axis];
+                };
+                cross[c] = from_line(a, 0) * from_line(b, 1) - from_line(a, 1) * from_line(b, 0);
+            }
+            const auto [low, high] = std::ranges::minmax(cross);
+            const bool is_inside = low > 0 || high < 0, is_outside = low < 0 && high > 0;
+            const bool says_inside = (inside >> k & 1) != 0, says_rim = (rim >> k & 1) != 0;
+            wrong += (says_inside && (says_rim || !is_inside)) || (!says_inside && !says_rim && !is_outside);
+            at_rim += says_rim;
+        }
+    }
+    CHECK(wrong == 0);
+    CHECK(at_rim > rounds);  // about half of the lines are on an edge, and many triangles are small in their box
+    CHECK(at_rim < 3 * rounds);
+}
 
 TEST_CASE("the columns at a list of places are those that are computed one by one")
 {
@@ -85,6 +143,7 @@ TEST_CASE("the columns at a list of places are those that are computed one by on
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         different += different_columns_at_places(random_scene(seed), seed);
         different += different_columns_at_places(hard_case(seed).scene, seed);
+        different += different_columns_at_places(far_away(random_scene(seed)), seed);
     }
     CHECK(different == 0);
 }
@@ -96,6 +155,7 @@ TEST_CASE("the columns of a block are those that are computed one by one")
         for (const int cols : {3, 40, 97}) {
             different += different_columns(random_scene(seed), cols);
             different += different_columns(hard_case(seed).scene, cols);
+            different += different_columns(far_away(random_scene(seed)), cols);
         }
     CHECK(different == 0);
 

@@ -5,17 +5,24 @@
 
 namespace spawnfield {
 
-bool counts(const Tile& tile, std::uint32_t element, Surfaces surfaces)
+std::uint64_t counted(const Tile& tile, std::uint64_t elements, Surfaces surfaces)
 {
-    return surfaces == Surfaces::All || !tile.is_triangle(element) || tile.piece(element).solid != 0;
+    if (surfaces == Surfaces::All) return elements;
+    std::uint64_t out = 0;
+    for_each_bit(elements, [&](std::uint32_t element) {
+        const bool counts = !tile.is_triangle(element) || tile.piece(element).solid != 0;
+        out |= std::uint64_t{counts} << element;
+    });
+    return out;
 }
 
 void find_hits(const Geometry& geometry, double x, double y, Surfaces surfaces, std::vector<SurfaceHit>& hits)
 {
     hits.clear();
-    geometry.impl().visit_near(x, y, x, y, [&](const Tile& tile, std::uint32_t element) {
-        if (!counts(tile, element, surfaces)) return;
-        if (const auto hit = hit_of(tile, element, x, y)) hits.push_back(*hit);
+    geometry.impl().visit_tiles(x, y, x, y, [&](const Tile& tile, const ElementBox&) {
+        for_each_bit(counted(tile, tile.near(x, y), surfaces), [&](std::uint32_t element) {
+            if (const auto hit = hit_of(tile, element, x, y)) hits.push_back(*hit);
+        });
     });
     std::sort(hits.begin(), hits.end(), [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; });
 }

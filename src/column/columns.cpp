@@ -1,5 +1,6 @@
 #include "column/columns.h"
 
+#include "base/four.h"
 #include "base/rect.h"
 #include "column/column_builder.h"
 
@@ -41,42 +42,56 @@ private:
     const Pair last_;
 };
 
-/// Returns the side of a square that has as many elements as a tile, if they are spread evenly, m.
-double tile_side(const Geometry& geometry)
-{
-    const Bounds& box = geometry.bounds();
-    const double area = (box.max.x() - box.min.x()) * (box.max.y() - box.min.y());
-    return area > 0 ? std::sqrt(area * TileBoxes::most / double(geometry.element_count())) : 0;
-}
+/// A few places, which are compared with boxes all at once.
+class PlaceGroup {
+public:
+    static constexpr std::size_t most = 64;
 
-/// Returns the size for SeenTriangle::sides_of() of all triangles in a tile's box, for lines in it or within 1 mm.
-double size_around(const ElementBox& box)
-{
-    constexpr double more = 0.01;  // m
-    return 3 * (double(box.max[0]) - double(box.min[0]) + double(box.max[1]) - double(box.min[1]) + more);
-}
+    explicit PlaceGroup(std::span<const Vec2> places)
+        : blocks_((places.size() + width - 1) / width), all_(bits_between(0, int(places.size()) - 1))
+    {
+        for (std::size_t i = 0; i < blocks_ * width; ++i) {
+            const Vec2& place = places[std::min(i, places.size() - 1)];
+            x_[i] = place.x();
+            y_[i] = place.y();
+        }
+    }
 
-/// Returns the rectangle around the places; there must be one.
-Rect rect_around(std::span<const Vec2> places)
-{
-    Rect out{places[0].x(), places[0].y(), places[0].x(), places[0].y()};
-    for (const Vec2& place : places.subspan(1))
-        out = {std::min(out.low_x, place.x()), std::min(out.low_y, place.y()), std::max(out.high_x, place.x()),
-               std::max(out.high_y, place.y())};
-    return out;
-}
+    /// Returns a bit for each place in a closed box, seen from above.
+    std::uint64_t in(const ElementBox& box) const
+    {
+        const double low_x = box.min[0], high_x = box.max[0], low_y = box.min[1], high_y = box.max[1];
+        std::uint64_t out = 0;
+        for (std::size_t block = 0; block < blocks_; ++block) {
+            std::uint32_t bits = 0;
+#pragma omp simd reduction(| : bits)
+            for (std::uint32_t k = 0; k < width; ++k) {
+                const double x = x_[block * width + k], y = y_[block * width + k];
+                const bool inside = (x >= low_x) & (x <= high_x) & (y >= low_y) & (y <= high_y);
+                bits |= std::uint32_t{inside} << k;
+            }
+            out |= std::uint64_t{bits} << block * width;
+        }
+        return out & all_;
+    }
+
+private:
+    static constexpr std::size_t width = 8;
+
+    std::size_t blocks_;
+    std::uint64_t all_;               ///< a bit for each place
+    std::array<double, most> x_, y_;  ///< m
+};
 
 /// Returns the end of the places from `begin` on that are in a rectangle with sides of at most `widest`, m. They are
 /// not many, because each of them is compared with each tile that meets the rectangle.
 std::size_t end_of_group(std::span<const Vec2> places, std::size_t begin, double widest)
 {
-    constexpr std::size_t most = 16;
-    Vec2 low = places[begin], high = low;
+    Rect around = rect_around(places.subspan(begin, 1));
     std::size_t end = begin + 1;
-    for (; end < std::min(places.size(), begin + most); ++end) {
-        low = low.cwiseMin(places[end]);
-        high = high.cwiseMax(places[end]);
-        if (!((high - low).maxCoeff() <= widest)) break;
+    for (; end < std::min(places.size(), begin + PlaceGroup::most); ++end) {
+        around.extend(places[end]);
+        if (!(around.longest_side() <= widest)) break;
     }
     return end;
 }
@@ -117,19 +132,24 @@ void Columns::set(const Geometry& geometry, const ColumnGrid& grid, Surfaces sur
 /// Finds the tiles of several places at once.
 void Columns::set(const Geometry& geometry, std::span<const Vec2> places)
 {
+    static_assert(PlaceGroup::most == Lines::most);
     start(int(places.size()), 1);
-    const double widest = 2 * tile_side(geometry);
+    const double widest = 2 * geometry.impl().tile_side();
     for (std::size_t begin = 0; begin < places.size();) {
         const std::size_t end = end_of_group(places, begin, widest);
+        const PlaceGroup group(places.subspan(begin, end - begin));
+        for (std::size_t i = begin; i < end; ++i) {
+            lines_.at[i - begin] = places[i];
+            lines_.slot[i - begin] = std::uint32_t(i);
+        }
         const Rect around = rect_around(places.subspan(begin, end - begin));
-        geometry.impl().visit_tiles(
-            around.low_x, around.low_y, around.high_x, around.high_y, [&](const Tile& tile, const ElementBox& box) {
-                for (std::size_t i = begin; i < end; ++i) {
-                    const double x = places[i].x(), y = places[i].y();
-                    if (x >= box.min[0] && x <= box.max[0] && y >= box.min[1] && y <= box.max[1])
-                        add_column(tile, tile.near(x, y, x, y), Surfaces::All, x, y, size_around(box), slots_[i]);
-                }
-            });
+        geometry.impl().visit_tiles(around.low_x, around.low_y, around.high_x, around.high_y,
+                                    [&](const Tile& tile, const ElementBox& box) {
+                                        for_each_bit(group.in(box), [&](std::uint32_t line) {
+                                            pair(tile, line, tile.near(lines_.at[line].x(), lines_.at[line].y()));
+                                        });
+                                        add_pairs(tile, box);
+                                    });
         begin = end;
     }
     complete_all();
@@ -161,12 +181,11 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
         const auto columns = std::uint32_t(range.last_col + 1 - range.first_col) *
                              std::uint32_t(range.last_row + 1 - range.first_row);
         if (columns <= tile.elements()) {  // most elements meet no column
-            add_columns(tile, surfaces, range, size_around(box));
+            add_columns(tile, box, surfaces, range);
             return;
         }
-        const std::uint64_t elements = tile.near(low_x, low_y, high_x, high_y);
+        const std::uint64_t elements = counted(tile, tile.near(low_x, low_y, high_x, high_y), surfaces);
         for_each_bit(elements, [&](std::uint32_t element) {
-            if (!counts(tile, element, surfaces)) return;
             if (!tile.is_triangle(element)) {
                 const Bounds bounds = tile.bounds(element);
                 if (index.find(bounds.min.head<2>(), bounds.max.head<2>(), range)) add_primitive(tile, element, range);
@@ -208,39 +227,68 @@ void Columns::add_triangle(const SeenTriangle& seen, const ColumnRange& range)
     }
 }
 
-/// Adds the hits of these columns with the elements of a tile. There are at most TileBoxes::most of them.
-void Columns::add_columns(const Tile& tile, Surfaces surfaces, const ColumnRange& range, double size)
+/// Adds the hits of these columns with the elements of a tile. There are at most Lines::most of them.
+void Columns::add_columns(const Tile& tile, const ElementBox& box, Surfaces surfaces, const ColumnRange& range)
 {
-    std::array<std::uint64_t, TileBoxes::most> near_x;
+    static_assert(TileBoxes::most == Lines::most);
+    const std::uint64_t elements = counted(tile, tile.alive, surfaces);
+    std::array<std::uint64_t, Lines::most> near_x;
     for (int i = range.first_col; i <= range.last_col; ++i)
-        near_x[std::size_t(i - range.first_col)] = tile.near_x(x_[std::size_t(i)]);
+        near_x[std::size_t(i - range.first_col)] = tile.near_x(x_[std::size_t(i)]) & elements;
+    std::uint32_t line = 0;
     for (int j = range.first_row; j <= range.last_row; ++j) {
         const double y = y_[std::size_t(j)];
         const std::uint64_t near_y = tile.near_y(y);
         if (near_y == 0) continue;
-        for (int i = range.first_col; i <= range.last_col; ++i)
-            add_column(tile, near_x[std::size_t(i - range.first_col)] & near_y, surfaces, x_[std::size_t(i)], y, size,
-                       slots_[number(i, j)]);
+        for (int i = range.first_col; i <= range.last_col; ++i, ++line) {
+            lines_.at[line] = {x_[std::size_t(i)], y};
+            lines_.slot[line] = std::uint32_t(number(i, j));
+            pair(tile, line, near_x[std::size_t(i - range.first_col)] & near_y);
+        }
     }
+    add_pairs(tile, box);
 }
 
-/// Adds the hits of one vertical line with these elements of a tile. `size` is for SeenTriangle::sides_of().
-inline void Columns::add_column(const Tile& tile, std::uint64_t elements, Surfaces surfaces, double x, double y,
-                                double size, Slot& slot)
+/// Remembers the triangles of a tile that may meet a line, and adds the hits of the line with primitives.
+inline void Columns::pair(const Tile& tile, std::uint32_t line, std::uint64_t elements)
 {
     for_each_bit(elements, [&](std::uint32_t element) {
-        if (!counts(tile, element, surfaces)) return;
-        if (!tile.is_triangle(element)) {
-            if (const auto hit = hit_of(tile, element, x, y)) add(slot, *hit);
-            return;
-        }
-        const SeenTriangle seen(tile, element);
-        const auto [inside, rim] = seen.sides_of(x, y, size);
-        if (inside != 0)
-            add_inside(slot, TrianglePlane(seen), x, y);
-        else if (rim != 0)
-            add_rim(slot, seen, TrianglePlane(seen), x, y);
+        if (tile.is_triangle(element))
+            pairs_.push_back({std::uint8_t(line), std::uint8_t(element)});
+        else if (const auto hit = hit_of(tile, element, lines_.at[line].x(), lines_.at[line].y()))
+            add(slots_[lines_.slot[line]], *hit);
     });
+}
+
+/// Adds the hits of the pairs. All lines are in the tile's box, or within 1 mm.
+void Columns::add_pairs(const Tile& tile, const ElementBox& box)
+{
+    constexpr std::size_t width = FourPairs::width;
+    constexpr double more = 0.01;  // m
+    const auto side = [&](std::size_t axis) { return double(box.max[axis]) - double(box.min[axis]) + more; };
+    const float rim = FourPairs::rim_in(side(0), side(1));
+    const std::size_t count = pairs_.size();
+    for (std::size_t first = 0; first < count; first += width) {
+        FourPairs four;
+        for (std::size_t k = 0; k < width; ++k) {
+            const Pair& pair = pairs_[std::min(first + k, count - 1)];
+            four.lines[k] = lines_.at[pair.line].data();
+            four.corners[k] = tile.corner_pointers(pair.triangle);
+        }
+        const SeenTriangle::Sides sides = four.sides(rim);
+        const std::uint32_t asked = count - first < width ? (1U << (count - first)) - 1 : 15;
+        for_each_bit((sides.inside | sides.rim) & asked, [&](std::uint32_t k) {
+            const Pair& pair = pairs_[first + k];
+            const Vec2& line = lines_.at[pair.line];
+            Slot& slot = slots_[lines_.slot[pair.line]];
+            const SeenTriangle seen(tile, pair.triangle);
+            if ((sides.inside >> k & 1) != 0)
+                add_inside(slot, TrianglePlane(seen), line.x(), line.y());
+            else
+                add_rim(slot, seen, TrianglePlane(seen), line.x(), line.y());
+        });
+    }
+    pairs_.clear();
 }
 
 inline void Columns::add_inside(Slot& slot, const TrianglePlane& plane, double x, double y)

@@ -54,8 +54,8 @@ inline std::optional<double> obstacle_above(const ColumnView& column, std::span<
 /// Which surfaces of a scene the columns contain: all, or only those of solids.
 enum class Surfaces { All, Filled };
 
-/// Returns whether columns of these surfaces contain an element of a tile.
-bool counts(const Tile& tile, std::uint32_t element, Surfaces surfaces);
+/// Returns those of a tile's elements, one bit for each, that columns of these surfaces contain.
+std::uint64_t counted(const Tile& tile, std::uint64_t elements, Surfaces surfaces);
 
 /// Finds the hits of the vertical line through (x, y), in the order of their elements.
 void find_hits(const Geometry& geometry, double x, double y, Surfaces surfaces, std::vector<SurfaceHit>& hits);
@@ -147,14 +147,24 @@ private:
         std::uint32_t next;  ///< index in listed_ of another hit of the column, or `none`
     };
     static constexpr std::uint32_t none = 0xffffffff;
+    /// Vertical lines that are compared with the elements of one tile.
+    struct Lines {
+        static constexpr std::size_t most = 64;
+        std::array<Vec2, most> at;             ///< m
+        std::array<std::uint32_t, most> slot;  ///< of their columns
+    };
+    /// A line and a triangle of a tile.
+    struct Pair {
+        std::uint8_t line, triangle;
+    };
 
     void start(int cols, int rows);
     void look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void add_triangle(const SeenTriangle& seen, const ColumnRange& range);
-    void add_columns(const Tile& tile, Surfaces surfaces, const ColumnRange& range, double size);
-    void add_column(const Tile& tile, std::uint64_t elements, Surfaces surfaces, double x, double y, double size,
-                    Slot& slot);
+    void add_columns(const Tile& tile, const ElementBox& box, Surfaces surfaces, const ColumnRange& range);
+    void pair(const Tile& tile, std::uint32_t line, std::uint64_t elements);
+    void add_pairs(const Tile& tile, const ElementBox& box);
     void add_inside(Slot& slot, const TrianglePlane& plane, double x, double y);
     void add_rim(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y);
     void add_primitive(const Tile& tile, std::uint32_t element, const ColumnRange& range);
@@ -172,6 +182,8 @@ private:
     std::uint16_t round_ = 0;  ///< counts the blocks
     bool are_dense_ = false;
     std::vector<double> x_, y_;  ///< of the block's columns, m, and x of a few more for TriangleSides; while scanning
+    Lines lines_;
+    std::vector<Pair> pairs_;
     std::vector<Slot> slots_;
     Column column_;
     std::vector<Start> starts_;

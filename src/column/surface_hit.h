@@ -78,21 +78,16 @@ public:
     /// The cross product of the vectors to two corners is twice the area of the triangle between the line and an edge.
     /// If all three clearly have the same sign, the line goes through the triangle. If two clearly have different
     /// signs, it does not. Clear lines are so far from an edge that neither rounding nor a tolerance decides.
-    /// `size` is at least the sum of the distances of the three corners from the line, along x and along y, m. With a
-    /// larger one, more lines are at the rim.
-    Sides sides_of(double x, double y, double size) const
-    {
-        const double ax = a_.x() - x, ay = a_.y() - y, bx = b_.x() - x, by = b_.y() - y, cx = c_.x() - x,
-                     cy = c_.y() - y, ab = ax * by - ay * bx, bc = bx * cy - by * cx, ca = cx * ay - cy * ax,
-                     low = std::min(std::min(ab, bc), ca), high = std::max(std::max(ab, bc), ca),
-                     rim = 4 * touch_tolerance * size;
-        const bool inside = (low > rim) | (high < -rim), outside = (high > rim) & (low < -rim);
-        return {inside, !(inside | outside)};
-    }
     Sides sides_of(double x, double y) const
     {
         const Place line(x, y);
-        return sides_of(x, y, ((a() - line).abs() + (b() - line).abs() + (c() - line).abs()).sum());
+        const double ax = a_.x() - x, ay = a_.y() - y, bx = b_.x() - x, by = b_.y() - y, cx = c_.x() - x,
+                     cy = c_.y() - y, ab = ax * by - ay * bx, bc = bx * cy - by * cx, ca = cx * ay - cy * ax,
+                     low = std::min(std::min(ab, bc), ca), high = std::max(std::max(ab, bc), ca),
+                     size = ((a() - line).abs() + (b() - line).abs() + (c() - line).abs()).sum(),
+                     rim = 4 * touch_tolerance * size;
+        const bool inside = (low > rim) | (high < -rim), outside = (high > rim) & (low < -rim);
+        return {inside, !(inside | outside)};
     }
 
     /// Returns the hit of a line at the rim, if it meets the triangle, whose plane is given. A vertical triangle of a
@@ -176,6 +171,41 @@ inline SeenTriangle::Sides TriangleSides::of(const Lines& lines, double y) const
     const std::uint32_t bits = bits_of(low > rim_, low < -rim_), inside = bits & 15;
     return {inside, ~(inside | bits >> 4) & 15};
 }
+
+/// Four pairs of a vertical line and a triangle.
+struct FourPairs {
+    static constexpr std::size_t width = 4;
+    std::array<const double*, width> lines;  ///< x and y of each line, m
+    std::array<std::array<const Vec3*, 3>, width> corners;
+
+    /// Does the same as SeenTriangle::sides_of() for each pair, in single floats. `rim` must be rim_in() for a box
+    /// around the lines and the triangles.
+    SeenTriangle::Sides sides(float rim) const
+    {
+        std::array<Four, 3> x, y;  // of the corners, from the lines
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto of = [&](std::size_t i, std::size_t j) {
+                return differences(corners[i][k]->data(), lines[i], corners[j][k]->data(), lines[j]);
+            };
+            const Four first = of(0, 1), second = of(2, 3);
+            x[k] = __builtin_shufflevector(first, second, 0, 2, 4, 6);
+            y[k] = __builtin_shufflevector(first, second, 1, 3, 5, 7);
+        }
+        const Four ab = x[0] * y[1] - y[0] * x[1], bc = x[1] * y[2] - y[1] * x[2], ca = x[2] * y[0] - y[2] * x[0],
+                   low = least(least(ab, bc), ca), high = greatest(greatest(ab, bc), ca), clear = all(rim);
+        const std::uint32_t bits = bits_of((low > clear) | (high < -clear), (high > clear) & (low < -clear)),
+                            inside = bits & 15;
+        return {inside, ~(inside | bits >> 4) & 15};
+    }
+
+    /// Returns the area, m2, above which a cross product of vectors between corners and lines in a box of this size, m,
+    /// is clearly not zero.
+    static float rim_in(double size_x, double size_y)
+    {
+        constexpr double rounding = 1e-6;  // more than 8 rounding errors of a float
+        return float(12 * touch_tolerance * (size_x + size_y) + rounding * size_x * size_y);
+    }
+};
 
 /// Returns where the vertical line through (x, y) meets an element of a tile, if it does.
 std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double x, double y);

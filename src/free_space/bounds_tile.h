@@ -131,6 +131,9 @@ struct SolidBounds::Impl {
 
     const std::vector<TileLevel>& levels() const { return base ? base->levels() : tiles.levels(); }
 
+    /// Says that most tiles will be needed (see TileStore).
+    void expect_all() const { (base ? base->tiles : tiles).expect_all(); }
+
     /// Returns how many columns or rows of a level lie completely on the finest raster. The last coarse cells may reach
     /// beyond it.
     std::uint32_t whole_cols(std::size_t level) const { return levels()[0].cols >> level; }

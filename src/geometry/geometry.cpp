@@ -57,6 +57,12 @@ double Geometry::Impl::elements_near(double low_x, double low_y, double high_x, 
     return sum / bytes_per_element;
 }
 
+double Geometry::Impl::tile_side() const
+{
+    const double area = (bounds.max.x() - bounds.min.x()) * (bounds.max.y() - bounds.min.y());
+    return area > 0 ? std::sqrt(area * TileBoxes::most / double(elements)) : 0;
+}
+
 Geometry::Geometry() : impl_(std::make_shared<const Impl>()) {}
 
 Geometry::Geometry(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}

@@ -54,10 +54,12 @@ struct Geometry::Impl {
     template <class Visit>
     void visit_in(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
     {
-        visit_near(low_x, low_y, high_x, high_y, [&](const Tile& tile, std::uint32_t element) {
-            const ElementBox box = tile.box(element);
-            if (box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y)
-                visit(tile, element);
+        visit_tiles(low_x, low_y, high_x, high_y, [&](const Tile& tile, const ElementBox&) {
+            for_each_bit(tile.near(low_x, low_y, high_x, high_y), [&](std::uint32_t element) {
+                const ElementBox box = tile.box(element);
+                if (box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y)
+                    visit(tile, element);
+            });
         });
     }
 
@@ -104,19 +106,12 @@ struct Geometry::Impl {
         });
     }
 
-    /// Calls visit(tile, element) once for each element whose box meets the closed rectangle, and for a few others near
-    /// it.
-    template <class Visit>
-    void visit_near(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
-    {
-        visit_tiles(low_x, low_y, high_x, high_y, [&](const Tile& tile, const ElementBox&) {
-            for_each_bit(tile.near(low_x, low_y, high_x, high_y), [&](std::uint32_t element) { visit(tile, element); });
-        });
-    }
-
     /// Estimates how many elements lie in a rectangle, from the sizes of the tiles that it meets. Each tile counts by
     /// the share of its area in the rectangle.
     double elements_near(double low_x, double low_y, double high_x, double high_y) const;
+
+    /// Returns the side of a square that has as many elements as a tile, if they are spread evenly, m.
+    double tile_side() const;
 
     /// Calls visit(forest, tree) for each tree of each forest.
     template <class Visit>

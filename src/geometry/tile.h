@@ -195,27 +195,43 @@ struct Tile {
     /// certainly does not meet it.
     std::uint64_t near(double low_x, double low_y, double high_x, double high_y) const
     {
-        return marks<2>({low_x, low_y}, {high_x, high_y});
+        return marks<0, 2>({number(0, low_x), number(1, low_y)}, {number(0, high_x), number(1, high_y)});
+    }
+    /// The same for a point.
+    std::uint64_t near(double x, double y) const
+    {
+        const std::array<SixteenBytes, 2> at{number(0, x), number(1, y)};
+        return marks<0, 2>(at, at);
     }
     // The same for a line along y, and for a line along x. Both together are near() for the point where they cross.
-    std::uint64_t near_x(double x) const { return marks<1>({x}, {x}); }
-    std::uint64_t near_y(double y) const { return marks<1, 1>({y}, {y}); }
+    std::uint64_t near_x(double x) const
+    {
+        const std::array<SixteenBytes, 1> at{number(0, x)};
+        return marks<0, 1>(at, at);
+    }
+    std::uint64_t near_y(double y) const
+    {
+        const std::array<SixteenBytes, 1> at{number(1, y)};
+        return marks<1, 1>(at, at);
+    }
     /// The same for a closed box.
     std::uint64_t near(const Bounds& space) const
     {
-        return marks<3>({space.min.x(), space.min.y(), space.min.z()}, {space.max.x(), space.max.y(), space.max.z()});
+        return marks<0, 3>({number(0, space.min.x()), number(1, space.min.y()), number(2, space.min.z())},
+                           {number(0, space.max.x()), number(1, space.max.y()), number(2, space.max.z())});
     }
 
 private:
-    /// The axes are `First` and those that follow it.
-    template <std::size_t Axes, std::size_t First = 0>
-    std::uint64_t marks(const std::array<double, Axes>& low, const std::array<double, Axes>& high) const
+    /// Returns the number of a coordinate, in all bytes.
+    SixteenBytes number(std::size_t axis, double coordinate) const
     {
-        std::array<SixteenBytes, Axes> from, to;  // in all their bytes
-        for (std::size_t k = 0; k < Axes; ++k) {
-            from[k] = SixteenBytes{} + head->scales[First + k].number_of(low[k]);
-            to[k] = SixteenBytes{} + head->scales[First + k].number_of(high[k]);
-        }
+        return SixteenBytes{} + head->scales[axis].number_of(coordinate);
+    }
+
+    /// Compares the elements' boxes with a box of these numbers, along axis `First` and those that follow it.
+    template <std::size_t First, std::size_t Axes>
+    std::uint64_t marks(const std::array<SixteenBytes, Axes>& from, const std::array<SixteenBytes, Axes>& to) const
+    {
         std::uint64_t out = 0;
         for (std::size_t e = 0; e < TileBoxes::most; e += sizeof(SixteenBytes)) {
             SixteenBytes gaps{};  // 0 where boxes meet

@@ -149,6 +149,17 @@ bool Judge::Impl::is_sparse(std::uint64_t poses) const
     return double(map.geometry.element_count()) * area(robot.bounds()) <= few_elements * scene;
 }
 
+void Judge::Impl::expect(std::uint64_t poses) const
+{
+    constexpr std::uint64_t many = 16;  // poses for each tile of the finest level: most of these will be read
+    const SolidBounds::Impl& bounds = map.solid_bounds.impl();
+    if (options.obstacles != Obstacles::Geometry || bounds.levels().empty() ||
+        poses < many * bounds.levels()[0].tiles.size())
+        return;
+    bounds.expect_all();
+    map.geometry.impl().expect_all();
+}
+
 PoseJudge::PoseJudge(const Judge::Impl& shared, double yaw) : PoseJudge(shared, yaw, shared.options.max_height) {}
 
 PoseJudge::PoseJudge(const Judge::Impl& shared, double yaw, double max_height)

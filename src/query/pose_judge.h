@@ -127,6 +127,8 @@ struct Judge::Impl {
     /// tiles of the mask would serve one pose only, and an exact check takes less time than reading a tile, unless it
     /// meets many elements.
     bool is_sparse(std::uint64_t poses) const;
+    /// Says that so many poses will be judged, at random places. For many, the map keeps all that it reads in memory.
+    void expect(std::uint64_t poses) const;
 
     /// Returns what lets the robot down. It is made at the first call. Throws ArgumentError if the obstacles are
     /// voxels.

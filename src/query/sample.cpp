@@ -179,15 +179,10 @@ private:
             make_room(size, out.spawns);
             return size;
         };
-        const auto place = [&](std::uint64_t index) {
-            Draw from(options_.seed, index);
-            return point(from);
-        };
-        const auto look_at = [&](std::uint64_t index, PoseJudge& judge, const ColumnView* column) {
-            return look(index, point, judge, column);
-        };
+        const auto look_at = [&](const Draw& from, const Vec2& at, PoseJudge& judge, const ColumnView* column,
+                                 Candidate& candidate) { look(from, at, judge, column, candidate); };
         const bool wants_columns = is_everywhere_ && !places_.has_limits();  // else many draws need none
-        next_ = draw_in_order(next_, shared_, options_, out, taken_, wants_columns, batch_size, place, look_at,
+        next_ = draw_in_order(next_, shared_, options_, out, taken_, wants_columns, batch_size, point, look_at,
                               [&](const Candidate& candidate) {
                                   ++out.draws;
                                   ++draws;
@@ -294,54 +289,47 @@ private:
         return out;
     }
 
-    template <class Point>
-    Candidate look(std::uint64_t index, const Point& point, PoseJudge& judge, const ColumnView* known_column)
+    void look(Draw from, const Vec2& at, PoseJudge& judge, const ColumnView* known_column, Candidate& out)
     {
-        Draw from(options_.seed, index);
-        const Vec2 at = point(from);
         const double slot = from.uniform(0, double(slots_));
-        Candidate out;
         out.spawn.yaw = draw_yaw(options_, from);
         out.off_area = !is_everywhere_ && !area_.contains(at);
-        if (out.off_area) return out;
+        if (out.off_area) return;
         out.off_rules = !places_.is_at_distances(at);
-        if (out.off_rules) return out;
+        if (out.off_rules) return;
         const ColumnView column = known_column != nullptr ? *known_column : ColumnView(judge.column_at(at));
         const std::optional<ChosenLayer> layer = layer_in(std::size_t(slot), column, at);
-        if (!layer) return out;
+        if (!layer) return;
         out.on_ground = true;
         out.on_double_ground = layer->is_double_ground && !is_settled_;
-        if (places_.has_facing()) out.spawn.yaw = places_.facing_yaw({at.x(), at.y(), layer->height});
-        if (is_settled_) return with_preference(settle(column, {at.x(), at.y(), layer->height}, from, out), from);
-        out.spawn.position = Vec3(at.x(), at.y(), layer->height + offset_);
-        out.near_avoided = !avoided_.is_clear(out.spawn.position);
-        if (out.near_avoided) return out;
-        out.clear = taken_.before().is_clear(out.spawn.position);
-        if (!out.clear) return out;
+        const Vec3 ground(at.x(), at.y(), layer->height);
+        if (places_.has_facing()) out.spawn.yaw = places_.facing_yaw(ground);
+        if (is_settled_)
+            settle(column, ground, from, out);
+        else
+            judge_level(column, ground, judge, out);
+        if (meter_.has_preferences() && out.verdict == Verdict::Valid && !out.off_rules && out.clear)
+            out.not_preferred = !(from.unit() < meter_.preference(pose_of(out.spawn), out.rest.margin));
+    }
+
+    /// Judges a level robot above the ground.
+    void judge_level(const ColumnView& column, const Vec3& ground, PoseJudge& judge, Candidate& out) const
+    {
+        out.spawn.position = ground + offset_ * Vec3::UnitZ();
+        if (!is_clear(out, avoided_, taken_)) return;
         judge.set_rotation(out.spawn.yaw);
         const Judgement judgement = judge.judge(column, out.spawn.position);
         out.set(judgement);
-        if (judgement.verdict != Verdict::Valid) return out;
-        const PlaceJudge::GroundPoint ground{{at.x(), at.y(), judgement.ground->height}, judgement.ground->part};
-        out.off_rules = places_.has_limits() && !places_.complies(pose_of(out.spawn), std::span(&ground, 1));
-        return with_preference(out, from);
-    }
-
-    /// Draws whether a candidate that would be a spawn is one, by the density that is preferred.
-    Candidate with_preference(Candidate out, Draw& from) const
-    {
-        if (!meter_.has_preferences() || out.verdict != Verdict::Valid || out.off_rules || !out.clear) return out;
-        out.not_preferred = !(from.unit() < meter_.preference(pose_of(out.spawn), out.rest.margin));
-        return out;
+        if (judgement.verdict != Verdict::Valid || !places_.has_limits()) return;
+        const PlaceJudge::GroundPoint below{{ground.x(), ground.y(), judgement.ground->height}, judgement.ground->part};
+        out.off_rules = !places_.complies(pose_of(out.spawn), std::span(&below, 1));
     }
 
     /// Lets a candidate down at a place.
-    Candidate settle(const ColumnView& column, const Vec3& place, Draw& from, Candidate out)
+    void settle(const ColumnView& column, const Vec3& place, Draw& from, Candidate& out)
     {
         let_down(stand_judges_.local(), column, place, shared_.options.stand.lift, options_, from, out);
-        out.near_avoided = !avoided_.is_clear(out.spawn.position);
-        out.clear = !out.near_avoided && taken_.before().is_clear(out.spawn.position);
-        return out;
+        is_clear(out, avoided_, taken_);
     }
 
     bool take(const Candidate& candidate, SpawnList& out)

@@ -120,13 +120,12 @@ public:
         const auto batch_size = [&](std::uint64_t draws) {
             return batch_for(options_.count, options_.min_distance, out.spawns.size(), draws);
         };
-        const auto place = [&](std::uint64_t index) -> Vec2 {
-            Draw draw(options_.seed, index);
-            return position(draw).head<2>();
+        const auto place = [&](Draw& draw) {
+            const double x = draw.uniform(box_.min.x(), box_.max.x()), y = draw.uniform(box_.min.y(), box_.max.y());
+            return Vec2(x, y);
         };
-        const auto look_at = [&](std::uint64_t index, PoseJudge& judge, const ColumnView*) {
-            return look(index, judge);
-        };
+        const auto look_at = [&](const Draw& draw, const Vec2& at, PoseJudge& judge, const ColumnView*,
+                                 Candidate& candidate) { look(draw, at, judge, candidate); };
         draw_in_order(0, shared_, options_, out, checked_, false, batch_size, place, look_at,
                       [&](const Candidate& candidate) {
                           failures = take(candidate, out) ? 0 : failures + 1;
@@ -137,43 +136,28 @@ public:
     }
 
 private:
-    Vec3 position(Draw& draw) const
+    void look(Draw draw, const Vec2& at, PoseJudge& judge, Candidate& out)
     {
-        const double x = draw.uniform(box_.min.x(), box_.max.x()), y = draw.uniform(box_.min.y(), box_.max.y());
-        return Vec3(x, y, draw.uniform(box_.min.z(), box_.max.z()));
-    }
-
-    Candidate look(std::uint64_t index, PoseJudge& judge)
-    {
-        Draw draw(options_.seed, index);
-        Candidate out;
-        const Vec3& p = out.spawn.position = position(draw);
+        const Vec3& p = out.spawn.position = {at.x(), at.y(), draw.uniform(box_.min.z(), box_.max.z())};
         out.spawn.yaw = draw_yaw(options_, draw);
-        out.off_area = !area_.contains(p.head<2>(), p.z());
-        if (out.off_area) return out;
+        out.off_area = !area_.contains(at, p.z());
+        if (out.off_area) return;
         const bool is_aerial = far_above_.holds(p);
-        if (is_settled_ && !is_aerial) return settle(judge, draw, out);
-        if (!is_clear(out)) return out;
+        if (is_settled_ && !is_aerial) {
+            settle(judge, draw, out);
+            return;
+        }
+        if (!is_clear(out, avoided_, checked_)) return;
         if (is_aerial) {
             out.verdict = Verdict::Aerial;
-            return out;
+            return;
         }
         judge.set_rotation(out.spawn.yaw);
         out.set(judge.judge(p));
-        return out;
-    }
-
-    /// Sets whether the spawn is far enough from avoided points and from the positions of earlier batches, and returns
-    /// it.
-    bool is_clear(Candidate& out) const
-    {
-        out.near_avoided = !avoided_.is_clear(out.spawn.position);
-        out.clear = !out.near_avoided && checked_.before().is_clear(out.spawn.position);
-        return out.clear;
     }
 
     /// Lets the robot of a draw down.
-    Candidate settle(PoseJudge& judge, Draw& draw, Candidate out)
+    void settle(PoseJudge& judge, Draw& draw, Candidate& out)
     {
         const Vec3 place = out.spawn.position;
         const Column& column = judge.column_at(place.head<2>());
@@ -181,10 +165,9 @@ private:
         const bool is_near = ground && place.z() - ground->height <= shared_.options.max_height + touch_tolerance;
         out.off_area = is_near && (!ground_z_.contains(ground->height, touch_tolerance) ||
                                    !area_.contains(place.head<2>(), ground->height));
-        if (out.off_area) return out;
+        if (out.off_area) return;
         let_down(stand_judges_.local(), column, place, shared_.options.stand.lift, options_, draw, out);
-        is_clear(out);
-        return out;
+        is_clear(out, avoided_, checked_);
     }
 
     /// Counts a draw. Returns whether it gave a spawn.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "query/avoid_index.h"
 #include "query/draw.h"
 #include "query/neighbourhoods.h"
 #include "query/pose_judge.h"
@@ -135,6 +136,15 @@ private:
     std::vector<Vec3> news_;
 };
 
+/// Sets whether a candidate is far enough from avoided points and from the positions of earlier batches, and returns
+/// it.
+inline bool is_clear(Candidate& out, const AvoidIndex& avoided, const TakenPoints& taken)
+{
+    out.near_avoided = !avoided.is_clear(out.spawn.position);
+    out.clear = !out.near_avoided && taken.before().is_clear(out.spawn.position);
+    return out.clear;
+}
+
 /// Returns a progress function that reports the number of spawns found, as a share of the wanted ones.
 template <class Options>
 Progress share_found(const Options& options, const SpawnList& found)
@@ -174,8 +184,9 @@ inline std::vector<std::uint32_t> in_blocks_of_neighbours(std::span<const Vec2> 
 /// What one thread needs for the draws of a batch.
 struct DrawThread {
     PoseJudge judge;
-    Columns columns;           ///< of a chunk of draws
-    std::vector<Vec2> places;  ///< of these draws
+    Columns columns;            ///< of a chunk of draws
+    std::vector<Vec2> places;   ///< of these draws, m
+    std::vector<Draw> started;  ///< these draws, after their places
 
     DrawThread(const Judge::Impl& shared, double yaw) : judge(shared, yaw) { judge.leave_layered_cells(); }
 };
@@ -188,13 +199,13 @@ inline std::vector<std::uint32_t> inverse_of(std::span<const std::uint32_t> orde
     return out;
 }
 
-/// Makes draws first, first + 1, … in batches. Several threads call look(index, judge, column), which returns a
-/// Candidate, for neighbours one after the other: place(index) returns x and y of a draw, m. If `wants_columns`,
-/// `column` is the column there, which takes less time to find for several neighbours at once, else nullptr. Then
-/// take(candidate) is called for one draw after the other, in their order, until it returns false. batch_size(draws)
-/// returns the size of the next batch after so many draws; it changes nothing but the exact checks. Ends early if the
-/// options' `stop` returns true: then, fewer than a block of judged draws are not taken. Returns the number of the next
-/// draw.
+/// Makes draws first, first + 1, … in batches: place(draw) draws x and y, m. Several threads call
+/// look(draw, place, judge, column, candidate), which goes on with the draw and sets an empty Candidate, for neighbours
+/// one after the other. If `wants_columns`, `column` is the column at the place, which takes less time to find for
+/// several neighbours at once, else nullptr. Then take(candidate) is called for one draw after the other, in their
+/// order, until it returns false. batch_size(draws) returns the size of the next batch after so many draws; it changes
+/// nothing but the exact checks. Ends early if the options' `stop` returns true: then, fewer than a block of judged
+/// draws are not taken. Returns the number of the next draw.
 template <class Options, class BatchSize, class Place, class Look, class Take>
 std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, const Options& options,
                             const SpawnList& found, TakenPoints& taken, bool wants_columns, const BatchSize& batch_size,
@@ -209,12 +220,16 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
         taken.settle();
         const std::size_t size = batch_size(next - first);
         places.resize(size);
-        for (std::size_t i = 0; i < size; ++i) places[i] = place(next + i);
+        for (std::size_t i = 0; i < size; ++i) {
+            Draw draw(options.seed, next + i);
+            places[i] = place(draw);
+        }
         const std::vector<std::uint32_t> order = in_blocks_of_neighbours(places, block);
-        batch.clear();
-        batch.resize(size);
+        if (batch.size() < size) batch.resize(size);
         const Progress progress = share_found(options, found);
         const bool is_sparse = shared.is_sparse(next + size);
+        const double shared_search = 4 * shared.map.geometry.impl().tile_side();  // m; few tiles for a chunk of draws
+        shared.expect(next + size);
         const auto stop = [&] { return is_stopped(options); };
         PerThread<DrawThread> threads([&] { return DrawThread(shared, options.yaw); });
         const std::size_t chunks = (size + chunk - 1) / chunk;
@@ -224,14 +239,19 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
             if (is_sparse) thread.judge.use_coarse_cells();
             const std::size_t begin = c * chunk;
             const std::span<const std::uint32_t> draws = std::span(order).subspan(begin, std::min(size - begin, chunk));
-            if (wants_columns) {
-                thread.places.clear();
-                for (const std::uint32_t i : draws) thread.places.push_back(places[i]);
-                thread.columns.set(shared.map.geometry, thread.places);
+            thread.places.clear();
+            thread.started.clear();
+            for (const std::uint32_t i : draws) {  // again, because places[i] are far apart in memory
+                Draw& draw = thread.started.emplace_back(options.seed, next + i);
+                thread.places.push_back(place(draw));
             }
+            if (const Rect around = rect_around(thread.places); around.longest_side() < shared_search)
+                thread.judge.expect(around);
+            if (wants_columns) thread.columns.set(shared.map.geometry, thread.places);
             for (std::size_t k = 0; k < draws.size(); ++k) {
                 const ColumnView column = wants_columns ? thread.columns.at(int(k), 0) : ColumnView();
-                batch[begin + k] = look(next + draws[k], thread.judge, wants_columns ? &column : nullptr);
+                Candidate& candidate = batch[begin + k] = {};
+                look(thread.started[k], thread.places[k], thread.judge, wants_columns ? &column : nullptr, candidate);
             }
         });
         const bool is_late = done < chunks;
@@ -255,7 +275,7 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
 /// judged in vain.
 inline std::size_t batch_for(std::size_t wanted, double min_distance, std::size_t found, std::uint64_t draws)
 {
-    constexpr double smallest = 256, largest = 1 << 17, largest_without_distance = 1 << 20;
+    constexpr double smallest = 256, largest = 1 << 17, largest_without_distance = largest_block;
     const double share = (double(found) + 1) / (double(draws) + 1);
     return std::size_t(std::clamp(std::min(double(wanted - found) / share, 2 * double(draws)), smallest,
                                   min_distance > 0 ? largest : largest_without_distance));

@@ -6,6 +6,11 @@
 #include <spawnfield/error.h>
 #include <spawnfield/memory.h>
 
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <string>
+
 namespace spawnfield::cli {
 
 void start_group(CLI::App& command, const std::string& name) { command.option_defaults()->group(name); }
@@ -22,11 +27,24 @@ double memory_limit(const CommonArgs& args)
     return given;
 }
 
+namespace {
+
+/// Allows more threads than there are cores if so many are asked for: the process belongs to the program alone. Without
+/// need, TBB is not started, which takes as long as a tenth of a short command.
+void allow_threads(const std::string& wanted)
+{
+    if (std::stoi(wanted) <= tbb::info::default_concurrency()) return;
+    static const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, most_threads);
+}
+
+}  // namespace
+
 void add_common(CLI::App& command, CommonArgs& args)
 {
     start_group(command, help_group::run);
     command.add_option("--threads", args.threads, "Number of threads; 0: all cores. It never changes the result")
-        ->check(CLI::Range(0, most_threads));
+        ->check(CLI::Range(0, most_threads))
+        ->each(allow_threads);
     command.add_flag("--quiet,-q", args.quiet, "Print no notices, no progress and no summary line");
     command.add_option("--summary", args.summary, "JSON file to which the summary is written (- for standard output)");
     command

@@ -10,8 +10,6 @@
 #include <spawnfield/input_file.h>
 #include <spawnfield/memory.h>
 
-#include <tbb/global_control.h>
-
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -131,7 +129,5 @@ int main(int argc, char** argv)
         terminal.complain(words + "\nRun with --help for more information.");
         return wrong_usage;
     }
-    // The process belongs to the program alone: --threads may ask for more threads than there are cores.
-    const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, most_threads);
     return run_guarded(app, chosen);
 }
