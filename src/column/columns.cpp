@@ -1,11 +1,9 @@
 #include "column/columns.h"
 
-#include "base/four.h"
 #include "base/rect.h"
 #include "column/column_builder.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace spawnfield {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/polygon2.h"
+#include "base/rect.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,21 +15,17 @@ namespace spawnfield {
 /// row by row, and so do the bins of a block.
 inline std::vector<std::uint32_t> in_neighbourhoods(std::span<const Vec2> places)
 {
-    Vec2 low = Vec2::Zero(), high = Vec2::Zero();
-    if (!places.empty()) low = high = places.front();
-    for (const Vec2& place : places) {
-        low = low.cwiseMin(place);
-        high = high.cwiseMax(place);
-    }
+    const Rect around = places.empty() ? Rect{} : rect_around(places);
     constexpr std::size_t block = 8;  // bins along its side
     const auto blocks = std::size_t(std::clamp(std::sqrt(double(places.size())) / block, 1.0, 128.0)),
                side = blocks * block;
-    const auto along = [&](const Vec2& place, int axis) {
-        const double share = (place[axis] - low[axis]) / (high[axis] - low[axis]);
+    const auto along = [&](double at, double low, double high) {
+        const double share = (at - low) / (high - low);
         return share > 0 ? std::size_t(std::min(share, 1.0) * double(side - 1)) : 0;  // also if the share is NaN
     };
     const auto bin_of = [&](const Vec2& place) {
-        const std::size_t row = along(place, 1), col = along(place, 0);
+        const std::size_t row = along(place.y(), around.low_y, around.high_y),
+                          col = along(place.x(), around.low_x, around.high_x);
         return ((row / block * blocks + col / block) * block + row % block) * block + col % block;
     };
     std::vector<std::uint32_t> bins(places.size()), next(side * side + 1), order(places.size());

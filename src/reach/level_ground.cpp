@@ -66,18 +66,6 @@ bool are_apart(std::span<const Vec2> a, std::span<const Vec2> b, double gap)
     return edges_separate(a, b, gap) || edges_separate(b, a, gap);
 }
 
-Rect box_around(std::span<const Vec2> points)
-{
-    Rect out{points[0].x(), points[0].y(), points[0].x(), points[0].y()};
-    for (const Vec2& point : points.subspan(1)) {
-        out.low_x = std::min(out.low_x, point.x());
-        out.low_y = std::min(out.low_y, point.y());
-        out.high_x = std::max(out.high_x, point.x());
-        out.high_y = std::max(out.high_y, point.y());
-    }
-    return out;
-}
-
 bool overlap(const Rect& a, const Rect& b, double gap)
 {
     return a.low_x <= b.high_x + gap && b.low_x <= a.high_x + gap && a.low_y <= b.high_y + gap &&
@@ -188,7 +176,7 @@ LevelGround::Solid LevelGround::triangle(const std::array<Vec3, 3>& corners, boo
     const Vec3 normal = (b - a).cross(c - a);
     out.outline = {{a.head<2>(), b.head<2>(), c.head<2>(), Vec2::Zero()}, 3};
     if (normal.z() < 0) std::swap(out.outline.corners[1], out.outline.corners[2]);
-    out.box = box_around(out.outline.span());
+    out.box = rect_around(out.outline.span());
     out.low = std::min({a.z(), b.z(), c.z()});
     out.high = std::max({a.z(), b.z(), c.z()});
     out.is_flat = out.low == out.high;
@@ -210,7 +198,7 @@ LevelGround::Solid LevelGround::primitive(const Shape& shape, bool is_terrain) c
     const Vec2 middle = ((box.min + box.max) / 2 - origin_).head<2>();
     const auto corner = [&](double x, double y) -> Vec2 { return middle + rotation * half.cwiseProduct(Vec2(x, y)); };
     out.outline = {{corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)}, 4};
-    out.box = box_around(out.outline.span());
+    out.box = rect_around(out.outline.span());
     out.low = box.min.z();
     out.high = out.middle = box.max.z();
     out.is_flat = shape.kind == ShapeKind::Box && shape.pose.rotation == Mat3::Identity();
@@ -290,7 +278,7 @@ void LevelGround::find_ends(const Solid& solid)
     const Outline& corners = solid.outline;
     for (std::size_t k = 0; k < corners.size(); ++k) {
         const Vec2 &p = corners[k], &q = corners[k + 1 < corners.size() ? k + 1 : 0];
-        const Rect edge = box_around(std::array{p, q});
+        const Rect edge = rect_around(std::array{p, q});
         const double length = (q - p).norm();
         if (length == 0 || are_apart(std::array{p, q}, square, 0)) continue;
         const Vec2 outside = crack / length * edge_normal(p, q);
@@ -308,7 +296,7 @@ void LevelGround::find_ends(const Solid& solid)
                 const Vec2 from = p + end * (q - p), to = p + low * (q - p);
                 if (are_apart(std::array{from, to}, square, 0)) continue;
                 has_ends_ = true;
-                add_near(ends_, {{from, to}, 2}, box_around(std::array{from, to}));
+                add_near(ends_, {{from, to}, 2}, rect_around(std::array{from, to}));
             }
             end = std::max(end, high);
         }

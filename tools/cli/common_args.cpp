@@ -29,6 +29,8 @@ double memory_limit(const CommonArgs& args)
 
 namespace {
 
+constexpr int most_threads = 1024;  // largest value of --threads
+
 /// Allows more threads than there are cores if so many are asked for: the process belongs to the program alone. Without
 /// need, TBB is not started, which takes as long as a tenth of a short command.
 void allow_threads(const std::string& wanted)

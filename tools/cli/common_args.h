@@ -9,9 +9,6 @@ namespace spawnfield::cli {
 
 class Host;
 
-/// Largest value of --threads.
-inline constexpr int most_threads = 1024;
-
 /// Options that every command has.
 struct CommonArgs {
     Host* host = nullptr;  ///< what surrounds the command; set when the command is chosen
