@@ -90,6 +90,18 @@ Scene far_away(Scene scene)
     return scene;
 }
 
+/// Returns the scene with all lengths multiplied: few triangles in several square kilometres.
+Scene enlarged(Scene scene)
+{
+    constexpr double factor = 300;
+    for (Vec3& vertex : scene.vertices) vertex *= factor;
+    for (Primitive& primitive : scene.primitives) {
+        primitive.shape.pose.position *= factor;
+        primitive.shape.size *= factor;
+    }
+    return scene;
+}
+
 }  // namespace
 
 TEST_CASE("four lines and triangles that are compared at once: what is not at the rim is true")
@@ -144,6 +156,7 @@ TEST_CASE("the columns at a list of places are those that are computed one by on
         different += different_columns_at_places(random_scene(seed), seed);
         different += different_columns_at_places(hard_case(seed).scene, seed);
         different += different_columns_at_places(far_away(random_scene(seed)), seed);
+        different += different_columns_at_places(enlarged(random_scene(seed)), seed);
     }
     CHECK(different == 0);
 }

@@ -40,36 +40,36 @@ private:
     const Pair last_;
 };
 
-/// A few places, which are compared with boxes all at once.
+/// A few places that are near each other, compared with boxes all at once, four at a time.
 class PlaceGroup {
 public:
     static constexpr std::size_t most = 64;
+    static constexpr double widest = 500;  ///< m; along x and y
 
     explicit PlaceGroup(std::span<const Vec2> places)
-        : blocks_((places.size() + width - 1) / width), all_(bits_between(0, int(places.size()) - 1))
+        : blocks_((places.size() + width - 1) / width), all_(bits_between(0, int(places.size()) - 1)),
+          origin_(places.front())
     {
         for (std::size_t i = 0; i < blocks_ * width; ++i) {
-            const Vec2& place = places[std::min(i, places.size() - 1)];
-            x_[i] = place.x();
-            y_[i] = place.y();
+            const Vec2 from_origin = places[std::min(i, places.size() - 1)] - origin_;
+            x_[i / 4][i % 4] = float(from_origin.x());
+            y_[i / 4][i % 4] = float(from_origin.y());
         }
     }
 
-    /// Returns a bit for each place in a closed box, seen from above.
+    /// Returns a bit for each place in a closed box, seen from above. Places up to 0.1 mm outside may get one, too.
     std::uint64_t in(const ElementBox& box) const
     {
-        const double low_x = box.min[0], high_x = box.max[0], low_y = box.min[1], high_y = box.max[1];
+        constexpr double rounding = 1e-4;  // m; more than the rounding errors of floats up to `widest`
+        const auto low = [&](std::size_t axis) { return all(float(box.min[axis] - origin_[axis] - rounding)); };
+        const auto high = [&](std::size_t axis) { return all(float(box.max[axis] - origin_[axis] + rounding)); };
+        const Four low_x = low(0), high_x = high(0), low_y = low(1), high_y = high(1);
+        const auto four_in = [&](std::size_t k) {
+            return (x_[k] >= low_x) & (x_[k] <= high_x) & (y_[k] >= low_y) & (y_[k] <= high_y);
+        };
         std::uint64_t out = 0;
-        for (std::size_t block = 0; block < blocks_; ++block) {
-            std::uint32_t bits = 0;
-#pragma omp simd reduction(| : bits)
-            for (std::uint32_t k = 0; k < width; ++k) {
-                const double x = x_[block * width + k], y = y_[block * width + k];
-                const bool inside = (x >= low_x) & (x <= high_x) & (y >= low_y) & (y <= high_y);
-                bits |= std::uint32_t{inside} << k;
-            }
-            out |= std::uint64_t{bits} << block * width;
-        }
+        for (std::size_t block = 0; block < blocks_; ++block)
+            out |= std::uint64_t{bits_of(four_in(2 * block), four_in(2 * block + 1))} << block * width;
         return out & all_;
     }
 
@@ -77,8 +77,9 @@ private:
     static constexpr std::size_t width = 8;
 
     std::size_t blocks_;
-    std::uint64_t all_;               ///< a bit for each place
-    std::array<double, most> x_, y_;  ///< m
+    std::uint64_t all_;                 ///< a bit for each place
+    Vec2 origin_;                       ///< the first place, m
+    std::array<Four, most / 4> x_, y_;  ///< from the first place, m
 };
 
 /// Returns the end of the places from `begin` on that are in a rectangle with sides of at most `widest`, m. They are
@@ -132,7 +133,7 @@ void Columns::set(const Geometry& geometry, std::span<const Vec2> places)
 {
     static_assert(PlaceGroup::most == Lines::most);
     start(int(places.size()), 1);
-    const double widest = 2 * geometry.impl().tile_side();
+    const double widest = std::min(4 * geometry.impl().tile_side(), PlaceGroup::widest);
     for (std::size_t begin = 0; begin < places.size();) {
         const std::size_t end = end_of_group(places, begin, widest);
         const PlaceGroup group(places.subspan(begin, end - begin));

@@ -1,4 +1,5 @@
 #include "base/chosen_bounds.h"
+#include "base/large_list.h"
 #include "query/raster_grid.h"
 #include "query/raster_judge.h"
 
@@ -73,7 +74,7 @@ void reserve_poses(std::vector<RasterPose>& poses, const std::vector<RasterRow>&
     for (const RasterRow& row : rows) needed += row.poses.size();
     if (needed <= poses.capacity()) return;
     const double expected = std::min(double(needed) / share, std::max(4 * double(needed), columns));
-    poses.reserve(std::max(needed + needed / 2, std::size_t(expected)));
+    reserve_large(poses, std::max(needed + needed / 2, std::size_t(expected)));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "base/chosen_bounds.h"
+#include "base/large_list.h"
 #include "base/polygon2.h"
 #include "query/area_index.h"
 #include "query/avoid_index.h"
@@ -198,12 +199,12 @@ private:
         return out.spawns.size() - before;
     }
 
-    /// Allocates memory for the spawns of a batch of draws at once, so that they are not copied again and again.
+    /// Allocates memory for the spawns of a batch of draws at once, and for most later ones, so that they are not
+    /// copied again and again. Memory that is not used is not taken from the system.
     void make_room(std::size_t draws, std::vector<Spawn>& spawns) const
     {
-        const auto at_most_all = [&](std::size_t size) { return std::min(size, options_.count); };
-        if (at_most_all(spawns.size() + draws) > spawns.capacity())
-            spawns.reserve(std::max(at_most_all(spawns.size() + draws), at_most_all(2 * spawns.capacity())));
+        const std::size_t needed = std::min(spawns.size() + draws, options_.count);
+        if (needed > spawns.capacity()) reserve_large(spawns, std::min(4 * needed, options_.count));
     }
 
     /// Draws in the cells that are not proven full, and splits these cells again and again. Ends when all spawns are

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/large_list.h"
 #include "query/avoid_index.h"
 #include "query/draw.h"
 #include "query/neighbourhoods.h"
@@ -120,6 +121,7 @@ public:
     bool is_still_clear(const Vec3& point) const { return since_.is_clear(point); }
     void add(const Vec3& point)
     {
+        if (!(before_.distance() > 0)) return;  // all points are clear
         since_.add(point);
         news_.push_back(point);
     }
@@ -225,6 +227,7 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
             places[i] = place(draw);
         }
         const std::vector<std::uint32_t> order = in_blocks_of_neighbours(places, block);
+        reserve_large(batch, size);
         if (batch.size() < size) batch.resize(size);
         const Progress progress = share_found(options, found);
         const bool is_sparse = shared.is_sparse(next + size);
@@ -259,7 +262,11 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
         const std::vector<std::uint32_t> number = inverse_of(order);
         for (std::size_t i = 0; i < taken_draws; ++i) {
             constexpr std::size_t ahead = 16;  // the candidates of successive draws are far apart in memory
-            if (i + ahead < taken_draws) __builtin_prefetch(&batch[number[i + ahead]]);
+            if (i + ahead < taken_draws) {
+                const Candidate& later = batch[number[i + ahead]];
+                __builtin_prefetch(&later);
+                __builtin_prefetch(&later.rest);  // may begin the next cache line
+            }
             ++next;
             if (!take(batch[number[i]])) return next;
         }

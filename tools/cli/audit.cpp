@@ -169,7 +169,7 @@ Ending run_audit(const AuditArgs& args, const CLI::App& command, Summary& summar
     report.part_limits.allow = rules.allow;
     report.part_limits.threads = args.threads;
     report.min_room = options.min_room;
-    const JudgeOptions limits = judge_options(args, summary.exact_time);
+    const JudgeOptions limits = judge_options(args, summary.exact_time());
     report.poses = options.poses = audited_poses(rules, named_poses(args));
     const std::vector<Robot> robots = load_robots(args, command);
     open_world(args, command, summary, report);

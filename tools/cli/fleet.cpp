@@ -135,7 +135,7 @@ std::vector<Session> open_sessions(const FleetInputs& inputs, const std::vector<
             if (out.empty()) return void(out.push_back(open_session(args, summary)));
             Session session{.map = out[0].map, .robot = read_robot(args, args.robot, robot_options(args)), .judge = {}};
             notices(args, session.robot.notices);
-            session.judge.emplace(session.map, session.robot, judge_options(args, summary.exact_time));
+            session.judge.emplace(session.map, session.robot, judge_options(args, summary.exact_time()));
             out.push_back(std::move(session));
         });
     return out;

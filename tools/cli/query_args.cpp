@@ -153,7 +153,7 @@ void add_robot_and_run(CLI::App& command, QueryArgs& args)
                      "Check every pose exactly, without the free-space mask: the same answers, slowly");
 }
 
-JudgeOptions judge_options(const QueryArgs& args, ExactTime& exact_time)
+JudgeOptions judge_options(const QueryArgs& args, ExactTime* exact_time)
 {
     if (args.max_slope && !(*args.max_slope > 0 && *args.max_slope < 90))
         throw bad_value("--max-slope", *args.max_slope, "> 0 and < 90 degrees");
@@ -177,7 +177,7 @@ JudgeOptions judge_options(const QueryArgs& args, ExactTime& exact_time)
                          .max_water_depth = args.max_water_depth,
                          .obstacles = args.collision == "octree" ? Obstacles::Voxels : Obstacles::Geometry,
                          .exhaustive = args.exhaustive,
-                         .exact_time = &exact_time};
+                         .exact_time = exact_time};
     options.stand = {.lift = args.lift,
                      .max_tilt = args.max_tilt * degree,
                      .min_stability = args.min_stability,

@@ -55,8 +55,7 @@ void add_verdict_options(CLI::App& command, QueryArgs& args);
 /// Adds the options on changes of the map, on how the robot is read, and those that every command has.
 void add_robot_and_run(CLI::App& command, QueryArgs& args);
 
-/// Returns the options of the Judge. The time of exact checks is added to `exact_time`. Throws ArgumentError for limits
-/// out of range.
-JudgeOptions judge_options(const QueryArgs& args, ExactTime& exact_time);
+/// Returns the options of the Judge; `exact_time` is that of the Summary. Throws ArgumentError for limits out of range.
+JudgeOptions judge_options(const QueryArgs& args, ExactTime* exact_time);
 
 }  // namespace spawnfield::cli

@@ -69,7 +69,7 @@ std::optional<ReaderProcess> reader_for(const CommonArgs& args, const std::strin
 
 Session open_session(const QueryArgs& args, Summary& summary)
 {
-    const JudgeOptions options = judge_options(args, summary.exact_time);
+    const JudgeOptions options = judge_options(args, summary.exact_time());
     Session session;
     if (!args.robot.empty()) {
         session.robot = open_robot(args, args.robot, robot_options(args));

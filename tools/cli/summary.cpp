@@ -109,7 +109,7 @@ std::string Summary::json(double total) const
     const double load = seconds_of("load"), write = seconds_of("write");
     // Exact checks run on all threads, so their seconds are divided by the number of threads.
     const double islands = seconds_of("islands"), query = total - load - write - islands, judging = seconds_of("query");
-    const double exact = std::min(judging, double(exact_time.nanoseconds) * 1e-9 / threads());
+    const double exact = std::min(judging, double(exact_time_.nanoseconds) * 1e-9 / threads());
     out["seconds"] = {{"load", load},   {"query", query}, {"mask", judging - exact},
                       {"exact", exact}, {"write", write}, {"total", total}};
     if (islands > 0) out["seconds"]["islands"] = islands;

@@ -24,12 +24,13 @@ public:
     double seconds_of(const std::string& stage) const;
     double elapsed() const;  ///< seconds since the start
     unsigned threads() const;
+    /// For a query's options; nullptr if the time of exact checks is not reported, because measuring it takes time.
+    ExactTime* exact_time() { return args_.summary.empty() ? nullptr : &exact_time_; }
 
     std::uint64_t seed = 0;
     std::string map_hash;
     std::vector<std::string> changes;                         ///< of the map
     bool is_interrupted = false;                              ///< the result is a part of what was asked for
-    ExactTime exact_time;                                     ///< for a query's options
     std::vector<std::string> extra;                           ///< further words, at the beginning of the line
     std::optional<std::uint64_t> cells;                       ///< of an adaptive raster
     std::optional<double> offset;                             ///< m, of poses on layers
@@ -59,6 +60,7 @@ private:
     std::optional<OutputFile> file_;
     std::optional<VerdictCounts> counts_;
     std::uint64_t exact_checks_ = 0;
+    ExactTime exact_time_;
     std::vector<std::pair<std::string, double>> seconds_;
     double start_, last_;
 };
