@@ -44,7 +44,7 @@ private:
 class PlaceGroup {
 public:
     static constexpr std::size_t most = 64;
-    static constexpr double widest = 500;  ///< m; along x and y
+    static constexpr double widest = 500;  ///< m, along x and y; so floats are exact to less than 0.1 mm
 
     explicit PlaceGroup(std::span<const Vec2> places)
         : blocks_((places.size() + width - 1) / width), all_(bits_between(0, int(places.size()) - 1)),
@@ -57,13 +57,13 @@ public:
         }
     }
 
-    /// Returns a bit for each place in a closed box, seen from above. Places up to 0.1 mm outside may get one, too.
+    /// Returns a bit for each place in a closed box, seen from above. Rounding keeps the order of coordinates, so no
+    /// place in the box is missed; but one that is up to 0.1 mm outside may get a bit, too.
     std::uint64_t in(const ElementBox& box) const
     {
-        constexpr double rounding = 1e-4;  // m; more than the rounding errors of floats up to `widest`
-        const auto low = [&](std::size_t axis) { return all(float(box.min[axis] - origin_[axis] - rounding)); };
-        const auto high = [&](std::size_t axis) { return all(float(box.max[axis] - origin_[axis] + rounding)); };
-        const Four low_x = low(0), high_x = high(0), low_y = low(1), high_y = high(1);
+        const auto from_origin = [&](double at, int axis) { return all(float(at - origin_[axis])); };
+        const Four low_x = from_origin(box.min[0], 0), high_x = from_origin(box.max[0], 0),
+                   low_y = from_origin(box.min[1], 1), high_y = from_origin(box.max[1], 1);
         const auto four_in = [&](std::size_t k) {
             return (x_[k] >= low_x) & (x_[k] <= high_x) & (y_[k] >= low_y) & (y_[k] <= high_y);
         };
