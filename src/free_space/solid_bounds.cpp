@@ -61,7 +61,8 @@ std::string rasterized_tile(const Geometry& geometry, const SolidBounds::Impl& r
                 geometry, {block.x0, block.y0, block.x0 + side * block.cell, block.y0 + side * block.cell}))
             return packed(uniform_tile(*same));
     const CellSpans surfaces(geometry, block);
-    const Columns centres(geometry, {raster.x0, raster.y0, level.cell, col0, row0, cols, rows, 0.5}, Surfaces::Filled);
+    thread_local Columns centres;  // its memory is used again for the next tile
+    centres.set(geometry, {raster.x0, raster.y0, level.cell, col0, row0, cols, rows, 0.5}, Surfaces::Filled);
     LooseTile out;
     out.bounds.spans.reserve(BoundsTile::cells);
     if (!surfaces.is_tight()) out.slack = std::numeric_limits<double>::infinity();

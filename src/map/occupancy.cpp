@@ -153,9 +153,9 @@ Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double re
         geometry, {block.x0, block.y0, block.x0 + cols * resolution, block.y0 + rows * resolution});
     std::optional<CellSpans> surfaces;
     if (!same) surfaces.emplace(geometry, block);
-    Columns centres;
+    thread_local Columns centres;  // its memory is used again for the next block
     const bool may_be_filled = !same && geometry.impl().has_filled_meshes;
-    if (may_be_filled) centres = Columns(geometry, {block.x0, block.y0, resolution, 0, 0, cols, rows, 0.5});
+    if (may_be_filled) centres.set(geometry, {block.x0, block.y0, resolution, 0, 0, cols, rows, 0.5});
     const auto voxel = [](double value) { return int(std::clamp(value, -2e9, 2e9)); };
     struct Run {
         int low, high;  // inclusive

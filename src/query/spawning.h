@@ -227,8 +227,11 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
             places[i] = place(draw);
         }
         const std::vector<std::uint32_t> order = in_blocks_of_neighbours(places, block);
-        reserve_large(batch, size);
-        if (batch.size() < size) batch.resize(size);
+        if (batch.size() < size) {
+            batch.clear();
+            reserve_large(batch, size);
+            batch.resize(size);
+        }
         const Progress progress = share_found(options, found);
         const bool is_sparse = shared.is_sparse(next + size);
         const double shared_search = 4 * shared.map.geometry.impl().tile_side();  // m; few tiles for a chunk of draws
