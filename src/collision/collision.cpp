@@ -161,24 +161,27 @@ struct CollisionChecker::Impl {
                  bool any_will_do, std::uint32_t& best) const
     {
         const std::uint32_t none = best;
-        FewTriangles few;
-        const auto look = [&] {
-            for_each_bit(meeting_triangles(tile, few, placed, origin),
-                         [&](std::uint32_t k) { best = std::min(best, tile.part(few.elements[k])); });
-            few.count = 0;
+        const auto is_done = [&] { return any_will_do && best != none; };
+        const auto is_wanted = [&](Label label, std::uint32_t part) {
+            return label != Label::Water && (any_will_do || part < best);
         };
-        for (; elements != 0; elements &= elements - 1) {
-            const auto element = std::uint32_t(std::countr_zero(elements));
-            if (tile.label(element) == Label::Water || (!any_will_do && tile.part(element) >= best)) continue;
-            if (tile.is_triangle(element)) {
-                few.add(tile, element);
-                if (few.count == FourTriangles::width) look();
-            } else if (primitive_meets(tile, element, placed, origin)) {
-                best = tile.part(element);
+        const std::uint64_t are_triangles = bits_between(0, int(tile.triangles.size()) - 1);
+        for (std::uint64_t triangles = elements & are_triangles; triangles != 0 && !is_done();) {
+            FewTriangles few;
+            for (; triangles != 0 && few.count < FourTriangles::width; triangles &= triangles - 1) {
+                const auto triangle = std::uint32_t(std::countr_zero(triangles));
+                if (is_wanted(tile.triangles[triangle].label, tile.piece(triangle).part)) few.add(tile, triangle);
             }
-            if (any_will_do && best != none) return;
+            if (few.count == 0) break;
+            for_each_bit(meeting_triangles(tile, few, placed, origin),
+                         [&](std::uint32_t k) { best = std::min(best, tile.piece(few.elements[k]).part); });
         }
-        if (few.count > 0) look();
+        for (std::uint64_t rest = elements & ~are_triangles; rest != 0 && !is_done(); rest &= rest - 1) {
+            const auto element = std::uint32_t(std::countr_zero(rest));
+            const TilePrimitive& primitive = tile.primitive(element);
+            if (is_wanted(primitive.label, primitive.part) && primitive_meets(tile, element, placed, origin))
+                best = primitive.part;
+        }
     }
 
     /// Returns a bit for each of these triangles that meets the robot.

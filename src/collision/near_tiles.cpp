@@ -50,12 +50,13 @@ void NearTiles::bin_expected()
     const Rect& area = *expected_;
     binned_.clear();
     found_.clear();
+    opened_.clear();
     probable_ = 0;
     geometry_.for_each_tree([&](const Forest& forest, std::size_t t) {
         const TileTree& tree = forest.trees[t];
         tree.visit(area.low_x, area.low_y, area.high_x, area.high_y, [&](std::size_t number) {
             binned_.push_back({limits_of(tree.boxes()[number]), {}});
-            found_.push_back({&forest, t, number, {}});
+            found_.push_back({&forest, std::uint32_t(t), std::uint32_t(number)});
         });
     });
     const double width = area.high_x - area.low_x, height = area.high_y - area.low_y;

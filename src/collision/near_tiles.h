@@ -4,6 +4,7 @@
 #include "base/rect.h"
 #include "geometry/geometry_impl.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -57,8 +58,9 @@ private:
     /// Where a tile of the expected rectangle is. It is opened when a box meets it for the first time.
     struct Found {
         const Forest* forest;
-        std::size_t tree, number;
-        std::optional<Tile> opened;
+        std::uint32_t tree, number;
+        std::uint32_t opened_as = not_opened;  ///< its index in opened_
+        static constexpr std::uint32_t not_opened = ~std::uint32_t{0};
     };
 
     static Limits limits_of(const ElementBox& tile)
@@ -87,33 +89,36 @@ private:
     {
         if (!is_binned_) bin_expected();
         const Limits limits = limits_of(space);
-        const auto is_last = [&](std::uint32_t tile) { return !visit(opened(found_[tile])); };
+        const auto is_last = [&](std::uint32_t tile) { return !visit(opened(tile)); };
         const std::uint32_t probable = probable_;
         if (probable < binned_.size() && overlap_within(binned_[probable].limits, limits) && is_last(probable)) return;
         const BinRange bins = bins_of(Two{space.min.x(), space.max.x()}, Two{space.min.y(), space.max.y()});
         const Binned* const binned = binned_.data();
         for (std::size_t row = bins.first_row; row <= bins.last_row; ++row)
-            for (std::size_t col = bins.first_col; col <= bins.last_col; ++col) {
-                for (const std::uint32_t number : entries_of(row * cols_ + col)) {
-                    const Binned& tile = binned[number];
-                    if (!overlap_within(tile.limits, limits)) continue;
-                    const bool is_first = col == std::max(bins.first_col, tile.bins.first_col) &&
-                                          row == std::max(bins.first_row, tile.bins.first_row);
-                    if (is_first && number != probable && is_last(number)) {
-                        probable_ = number;
+            for (std::size_t col = bins.first_col; col <= bins.last_col; ++col)
+                for (const std::uint32_t tile : entries_of(row * cols_ + col)) {
+                    const auto& [tile_limits, tile_bins] = binned[tile];
+                    if (!overlap_within(tile_limits, limits)) continue;
+                    const bool is_first = col == std::max(bins.first_col, tile_bins.first_col) &&
+                                          row == std::max(bins.first_row, tile_bins.first_row);
+                    if (is_first && tile != probable && is_last(tile)) {
+                        probable_ = tile;
                         return;
                     }
                 }
-            }
     }
     std::span<const std::uint32_t> entries_of(std::size_t bin) const
     {
         return std::span(entries_).subspan(starts_[bin], starts_[bin + 1] - starts_[bin]);
     }
-    const Tile& opened(Found& found) const
+    const Tile& opened(std::uint32_t tile)
     {
-        if (!found.opened) found.opened = geometry_.open(*found.forest, found.tree, found.number);
-        return *found.opened;
+        Found& found = found_[tile];
+        if (found.opened_as == Found::not_opened) {
+            opened_.push_back(geometry_.open(*found.forest, found.tree, found.number));
+            found.opened_as = std::uint32_t(opened_.size() - 1);
+        }
+        return opened_[found.opened_as];
     }
     BinRange bins_of(const Two& x, const Two& y) const;
     void bin_expected();
@@ -133,6 +138,7 @@ private:
     std::vector<std::uint32_t> entries_;  ///< indices in binned_ and found_
     std::vector<Binned> binned_;
     std::vector<Found> found_;  ///< the same tiles
+    std::vector<Tile> opened_;  ///< some of them
     /// The tile at which the last visit ended, or 0. It is visited first: for robots at neighbouring places, the same
     /// tile often decides.
     std::uint32_t probable_ = 0;

@@ -226,8 +226,10 @@ struct Tile {
     {
         const auto [low_x, high_x] = head->scales[0].numbers_of(Two{space.min.x(), space.max.x()});
         const auto [low_y, high_y] = head->scales[1].numbers_of(Two{space.min.y(), space.max.y()});
+        const std::uint64_t from_above = marks<0, 2>({low_x, low_y}, {high_x, high_y});
+        if (from_above == 0) return 0;
         const auto [low_z, high_z] = head->scales[2].numbers_of(Two{space.min.z(), space.max.z()});
-        return marks<0, 3>({low_x, low_y, low_z}, {high_x, high_y, high_z});
+        return from_above & marks<2, 1>({low_z}, {high_z});
     }
 
 private:
