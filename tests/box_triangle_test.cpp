@@ -134,11 +134,13 @@ TEST_CASE("the fast test of four triangles is right wherever it claims something
         const Vec3 half(size(random), size(random), size(random));
         const Vec3 origin = 1000 * Vec3(normal(random), normal(random), normal(random));
         Pose origin_from_box{Vec3(normal(random), normal(random), normal(random)), Mat3::Identity()};
-        if (n % 2 == 0)
+        if (n % 3 == 0)
             origin_from_box.rotation = Eigen::Quaterniond(normal(random), normal(random), normal(random),
                                                           normal(random))
                                            .normalized()
                                            .toRotationMatrix();
+        else if (n % 3 == 1)  // upright
+            origin_from_box.rotation = Eigen::AngleAxisd(normal(random), Vec3::UnitZ()).toRotationMatrix();
         std::array<Triangle3, FourTriangles::width> triangles, placed;
         std::array<std::array<const Vec3*, 3>, FourTriangles::width> corners;
         for (std::size_t t = 0; t < triangles.size(); ++t) {

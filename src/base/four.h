@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/bits.h"
+
 #ifdef __SSE2__
 #include <emmintrin.h>
 #endif
@@ -17,12 +19,38 @@ using FourMasks = decltype(Four{} < Four{});  ///< all bits of a number are equa
 inline Four all(float value) { return Four{value, value, value, value}; }
 inline Four least(const Four& a, const Four& b) { return a < b ? a : b; }
 inline Four greatest(const Four& a, const Four& b) { return a > b ? a : b; }
-inline Four magnitude(const Four& a) { return greatest(a, -a); }
+inline Four magnitude(const Four& a)
+{
+    constexpr std::int32_t without_sign = 0x7fffffff;
+    return Four(FourMasks(a) & FourMasks{without_sign, without_sign, without_sign, without_sign});
+}
+
+/// Two numbers in one register.
+using Two = double __attribute__((vector_size(16)));
+using TwoMasks = decltype(Two{} < Two{});  ///< all bits of a number are equal
+
+inline Two both(double value) { return Two{value, value}; }
+// If one of the numbers is NaN, both return the second one.
+inline Two least(const Two& a, const Two& b)
+{
+#ifdef __SSE2__
+    return Two(_mm_min_pd(__m128d(a), __m128d(b)));
+#else
+    return a < b ? a : b;
+#endif
+}
+inline Two greatest(const Two& a, const Two& b)
+{
+#ifdef __SSE2__
+    return Two(_mm_max_pd(__m128d(a), __m128d(b)));
+#else
+    return a > b ? a : b;
+#endif
+}
 
 /// Returns x and y of the differences a - b and c - d, where each argument points to x and y.
 inline Four differences(const double* a, const double* b, const double* c, const double* d)
 {
-    using Two = double __attribute__((vector_size(16)));
     const auto two_at = [](const double* from) {
         Two out;
         std::memcpy(&out, from, sizeof out);
@@ -43,6 +71,28 @@ inline std::uint32_t bits_of(const FourMasks& first, const FourMasks& second)
     std::memcpy(&twos, &marks, sizeof twos);
     const std::uint64_t both = twos[0] | twos[1];
     return std::uint32_t(both | both >> 32) & 255;
+#endif
+}
+
+/// Returns whether all masks are set.
+inline bool are_set(const TwoMasks& masks)
+{
+#ifdef __SSE2__
+    return _mm_movemask_pd(__m128d(masks)) == 3;
+#else
+    return (masks[0] & masks[1]) != 0;
+#endif
+}
+
+/// Returns two whole numbers 0 .. 255, each in all bytes.
+inline std::array<SixteenBytes, 2> in_all_bytes(const Two& numbers)
+{
+#ifdef __SSE2__
+    const auto whole = SixteenBytes(_mm_cvttpd_epi32(__m128d(numbers)));
+    return {__builtin_shufflevector(whole, whole, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0),
+            __builtin_shufflevector(whole, whole, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4)};
+#else
+    return {SixteenBytes{} + std::uint8_t(numbers[0]), SixteenBytes{} + std::uint8_t(numbers[1])};
 #endif
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace spawnfield {
 namespace {
@@ -80,6 +81,7 @@ FourBoxes::FourBoxes(const Vec3& half, const Pose& pose)
     half_ = three(half);
     for (int axis = 0; axis < 3; ++axis) axes_[std::size_t(axis)] = three(pose.rotation.col(axis));
     centre_ = three(pose.rotation.transpose() * pose.position);
+    is_upright_ = pose.rotation.col(2) == Vec3::UnitZ() && pose.rotation(2, 0) == 0 && pose.rotation(2, 1) == 0;
     size_ = all(float(half.sum() + pose.position.norm()));
 }
 
@@ -104,30 +106,63 @@ using Three = std::array<Four, 3>;
 
 Three difference(const Three& a, const Three& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Four dot(const Three& a, const Three& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Three smaller(const Three& a, const Three& b) { return {least(a[0], b[0]), least(a[1], b[1]), least(a[2], b[2])}; }
-Three larger(const Three& a, const Three& b)
-{
-    return {greatest(a[0], b[0]), greatest(a[1], b[1]), greatest(a[2], b[2])};
-}
 Three magnitudes(const Three& a) { return {magnitude(a[0]), magnitude(a[1]), magnitude(a[2])}; }
 
-/// Does the same as Gaps for four triangles.
-class FourGaps {
-public:
-    /// Adds an axis whose length is at most `length`. `noise` is larger than the rounding error of the gap. Where
-    /// `is_void` is set, the axis has no direction, and others decide.
-    void add(const Four& gap, const Four& length, const Four& noise, const FourMasks& is_void = FourMasks{})
-    {
-        const Four least = float(least_depth) * length + noise;
-        apart |= gap > least;
-        overlap &= (gap < -least) | is_void;
-    }
-    bool are_apart() const { return bits_of(apart, apart) == 255; }
+// What follows returns the largest gap between a box and four triangles on some axes, as in Gaps: m, multiplied by the
+// length of the axis. `seen` has their corners in the frame of the box. A gap that is NaN does not count, because the
+// gap of the triangle's normal is NaN, too, or its limit is infinite: then there is no proof of overlap.
 
-    FourMasks apart{}, overlap = ~FourMasks{};
-};
+Four gap_on_box_axes(const std::array<Three, 3>& seen, const Three& half)
+{
+    Four out = all(-std::numeric_limits<float>::infinity());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Four &a = seen[0][axis], &b = seen[1][axis], &c = seen[2][axis];
+        const Four low = least(least(a, b), c), high = greatest(greatest(a, b), c);
+        out = greatest(greatest(low, -high) - half[axis], out);
+    }
+    return out;
+}
+
+/// The axes are the cross products of the triangles' edges, whose magnitudes are `along`, with the edges of the box.
+/// Both ends of an edge have the same coordinate on such an axis. The triangle's third corner lies the triangle's
+/// normal away from them. An axis without a direction does not count: others decide.
+Four gap_on_edge_axes(const std::array<Three, 3>& seen, const std::array<Three, 3>& along, const Three& normal,
+                      const Three& half)
+{
+    Four out = all(-std::numeric_limits<float>::infinity());
+    for (std::size_t w = 0; w < 3; ++w) {
+        const std::size_t u = (w + 1) % 3, v = (w + 2) % 3;
+        const Four middle = 0.5F * normal[w], half_width = magnitude(middle);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Three &from = seen[k], &to = seen[(k + 1) % 3];
+            const Four reach = half[u] * along[k][v] + half[v] * along[k][u],
+                       gap = magnitude(from[u] * to[v] - from[v] * to[u] - middle) - (half_width + reach);
+            const FourMasks is_void = reach == 0;
+            out = greatest(Four(FourMasks(gap) | is_void), out);  // `out` remains where the mask makes a NaN
+        }
+    }
+    return out;
+}
 
 }  // namespace
+
+/// Returns the corners of the triangles from the middle of the box, along its axes.
+std::array<Three, 3> FourTriangles::seen_from(const FourBoxes& box) const
+{
+    std::array<Three, 3> seen;
+    const auto& [x, y, z] = box.axes_;
+    if (box.is_upright_) {  // saves the products with zero and one
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Three& corner = corners_[k];
+            seen[k] = difference({x[0] * corner[0] + x[1] * corner[1], y[0] * corner[0] + y[1] * corner[1], corner[2]},
+                                 box.centre_);
+        }
+    } else {
+        for (std::size_t k = 0; k < 3; ++k)
+            seen[k] = difference({dot(x, corners_[k]), dot(y, corners_[k]), dot(z, corners_[k])}, box.centre_);
+    }
+    return seen;
+}
 
 /// The rounding errors follow from that of one operation, 2^-24 of its result. With all coordinates at most `size`, and
 /// those of edges at most `longest`, they are below 6 size 2^-24 for a corner, 14 size 2^-24 for an edge, and below
@@ -135,43 +170,29 @@ public:
 /// is one more product, has `longest` times this error.
 FourTriangles::Marks FourTriangles::compare(const FourBoxes& box) const
 {
-    std::array<Three, 3> seen, edges;  // from the middle of the box, along its axes
-    for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            seen[k][axis] = dot(box.axes_[axis], corners_[k]) - box.centre_[axis];
+    const std::array<Three, 3> seen = seen_from(box);
+    std::array<Three, 3> edges, along;
     Four longest{};
     for (std::size_t k = 0; k < 3; ++k) {
         edges[k] = difference(seen[(k + 1) % 3], seen[k]);
-        const Three by = magnitudes(edges[k]);
-        longest = greatest(greatest(longest, by[0]), greatest(by[1], by[2]));
+        along[k] = magnitudes(edges[k]);
+        for (const Four& by : along[k]) longest = greatest(longest, by);
     }
-    constexpr float rounding = 0x1p-24F;
+    constexpr float rounding = 0x1p-24F, depth = float(least_depth);
     const Four size = size_ + box.size_, noise = 96 * rounding * size * (size + longest);
-    FourGaps gaps;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Four low = least(least(seen[0][axis], seen[1][axis]), seen[2][axis]),
-                   high = greatest(greatest(seen[0][axis], seen[1][axis]), seen[2][axis]), half = box.half_[axis];
-        gaps.add(greatest(low - half, -half - high), all(1), 16 * rounding * size);
-    }
     const Three &p = edges[0], &q = edges[1],
                 normal{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]},
                 steep = magnitudes(normal);
-    gaps.add(magnitude(dot(normal, seen[0])) - dot(steep, box.half_), steep[0] + steep[1] + steep[2], noise * longest);
-    if (!gaps.are_apart()) {
-        // Both ends of an edge have the same coordinate on its cross product with an edge of the box. The triangle's
-        // third corner lies the triangle's normal away from them.
-        const Three down = smaller(normal, {}), up = larger(normal, {});
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Three &from = seen[k], &to = seen[(k + 1) % 3], by = magnitudes(edges[k]);
-            for (std::size_t u = 0; u < 3; ++u) {
-                const std::size_t v = (u + 1) % 3, w = (u + 2) % 3;
-                const Four end = from[u] * to[v] - from[v] * to[u], reach = box.half_[u] * by[v] + box.half_[v] * by[u];
-                const Four length = by[u] + by[v];
-                gaps.add(greatest(end - up[w] - reach, down[w] - end - reach), length, noise, length == 0);
-            }
-        }
-    }
-    const std::uint32_t marks = bits_of(gaps.apart, gaps.overlap & ~gaps.apart);
+    const Four by_normal = magnitude(dot(normal, seen[0])) - dot(steep, box.half_),
+               normal_limit = depth * (steep[0] + steep[1] + steep[2]) + noise * longest;
+    FourMasks apart = by_normal > normal_limit;
+    if (bits_of(apart, apart) == 255) return {15, 0};
+    const Four by_box = gap_on_box_axes(seen, box.half_), box_limit = depth + 16 * rounding * size,
+               by_edges = gap_on_edge_axes(seen, along, normal, box.half_),
+               edge_limit = 1.5F * depth * longest + noise;  // no such axis is longer than 1.5 longest
+    apart |= (by_box > box_limit) | (by_edges > edge_limit);
+    const FourMasks overlap = (by_normal < -normal_limit) & (by_box < -box_limit) & (by_edges < -edge_limit);
+    const std::uint32_t marks = bits_of(apart, overlap & ~apart);
     return {marks & 15, marks >> 4};
 }
 

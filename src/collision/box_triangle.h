@@ -23,8 +23,8 @@ AxisTest axis_test(const Vec3& half, const std::array<Vec3, 3>& corners);
 /// A box as FourTriangles needs it: all numbers four times.
 class FourBoxes {
 public:
-    /// A box with these half lengths along its own axes, m. Its pose is that of its centre, relative to the origin of
-    /// the triangles.
+    /// A box with these half lengths along its own axes, m, > 0. Its pose is that of its centre, relative to the origin
+    /// of the triangles.
     FourBoxes(const Vec3& half, const Pose& pose);
 
 private:
@@ -34,6 +34,7 @@ private:
     Three half_;                 ///< m
     std::array<Three, 3> axes_;  ///< of the box, one after the other
     Three centre_;               ///< along these axes, m
+    bool is_upright_;            ///< its third axis is z
     Four size_;                  ///< no coordinate of the box is larger, m
 };
 
@@ -54,6 +55,8 @@ public:
 
 private:
     using Three = FourBoxes::Three;
+
+    std::array<Three, 3> seen_from(const FourBoxes& box) const;
 
     std::array<Three, 3> corners_;
     Four size_;  ///< no distance of a corner from the origin is larger, m

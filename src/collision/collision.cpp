@@ -88,6 +88,25 @@ struct PlacedPart {
 
 namespace {
 
+/// A few triangles of a tile, which are compared at once.
+struct FewTriangles {
+    std::array<std::uint32_t, FourTriangles::width> elements;
+    std::array<std::array<const Vec3*, 3>, FourTriangles::width> corners;
+    std::size_t count = 0;
+
+    void add(const Tile& tile, std::uint32_t triangle)
+    {
+        elements[count] = triangle;
+        corners[count++] = tile.corner_pointers(triangle);
+    }
+    /// Returns the corners. Places without a triangle have those of the first one.
+    const auto& filled_corners()
+    {
+        for (std::size_t k = count; k < corners.size(); ++k) corners[k] = corners[0];
+        return corners;
+    }
+};
+
 Bounds moved(const Bounds& box, const Vec3& by) { return {box.min + by, box.max + by}; }
 
 bool is_box(const PlacedPart& placed) { return placed.part->bounds_shape.kind == ShapeKind::Box; }
@@ -143,41 +162,40 @@ struct CollisionChecker::Impl {
     {
         const std::uint32_t none = best;
         const auto is_done = [&] { return any_will_do && best != none; };
-        std::array<std::uint32_t, FourTriangles::width> four;
-        std::uint32_t count = 0;
-        const auto look_at_four = [&] {
-            for_each_bit(meeting_triangles(tile, std::span(four).first(count), placed, origin),
-                         [&](std::uint32_t k) { best = std::min(best, tile.part(four[k])); });
-            count = 0;
+        const auto is_wanted = [&](Label label, std::uint32_t part) {
+            return label != Label::Water && (any_will_do || part < best);
         };
-        for (; elements != 0 && !is_done(); elements &= elements - 1) {
-            const auto element = std::uint32_t(std::countr_zero(elements));
-            if (tile.label(element) == Label::Water || tile.part(element) >= best) continue;
-            if (!tile.is_triangle(element)) {
-                if (primitive_meets(tile, element, placed, origin)) best = tile.part(element);
-                continue;
+        const std::uint64_t are_triangles = bits_between(0, int(tile.triangles.size()) - 1);
+        for (std::uint64_t triangles = elements & are_triangles; triangles != 0 && !is_done();) {
+            FewTriangles few;
+            for (; triangles != 0 && few.count < FourTriangles::width; triangles &= triangles - 1) {
+                const auto triangle = std::uint32_t(std::countr_zero(triangles));
+                if (is_wanted(tile.triangles[triangle].label, tile.piece(triangle).part)) few.add(tile, triangle);
             }
-            four[count++] = element;
-            if (count == four.size()) look_at_four();
+            if (few.count == 0) break;
+            for_each_bit(meeting_triangles(tile, few, placed, origin),
+                         [&](std::uint32_t k) { best = std::min(best, tile.piece(few.elements[k]).part); });
         }
-        if (count > 0 && !is_done()) look_at_four();
+        for (std::uint64_t rest = elements & ~are_triangles; rest != 0 && !is_done(); rest &= rest - 1) {
+            const auto element = std::uint32_t(std::countr_zero(rest));
+            const TilePrimitive& primitive = tile.primitive(element);
+            if (is_wanted(primitive.label, primitive.part) && primitive_meets(tile, element, placed, origin))
+                best = primitive.part;
+        }
     }
 
     /// Returns a bit for each of these triangles that meets the robot.
-    std::uint32_t meeting_triangles(const Tile& tile, std::span<const std::uint32_t> triangles,
-                                    const std::vector<PlacedPart>& placed, const Vec3& origin) const
+    std::uint32_t meeting_triangles(const Tile& tile, FewTriangles& few, const std::vector<PlacedPart>& placed,
+                                    const Vec3& origin) const
     {
-        std::array<std::array<const Vec3*, 3>, FourTriangles::width> corners;
-        for (std::size_t k = 0; k < corners.size(); ++k)
-            corners[k] = tile.corner_pointers(triangles[std::min(k, triangles.size() - 1)]);
-        const FourTriangles seen(corners, origin);
-        const std::uint32_t asked = (1U << triangles.size()) - 1;
+        const FourTriangles seen(few.filled_corners(), origin);
+        const std::uint32_t asked = (1U << few.count) - 1;
         std::uint32_t met = 0;
         for (const PlacedPart& part : placed) {
             const FourTriangles::Marks marks = fcl_only ? FourTriangles::Marks{} : seen.compare(part.box);
             if (is_box(part)) met |= marks.overlap & asked;
             for_each_bit(asked & ~met & ~marks.apart, [&](std::uint32_t k) {
-                if (meets_triangle(part, tile, triangles[k], origin)) met |= 1U << k;
+                if (meets_triangle(part, tile, few.elements[k], origin)) met |= 1U << k;
             });
         }
         return met;
@@ -313,7 +331,8 @@ std::optional<CollisionHit> PoseChecker::find(const Pose& pose, bool any_will_do
     std::uint32_t best = CollisionHit::occupancy;  // larger than every part number: no hit yet
     const auto is_wanted = [&] { return !any_will_do || best == CollisionHit::occupancy; };
     tiles_->visit(space, [&](const Tile& tile) {
-        impl_.find_in(tile, tile.near(space), placed_, pose.position, any_will_do, best);
+        const std::uint64_t elements = tile.near(space);
+        if (elements != 0) impl_.find_in(tile, elements, placed_, pose.position, any_will_do, best);
         return is_wanted();
     });
     if (!any_will_do || best == CollisionHit::occupancy) best = impl_.first_around(pose, column, best);

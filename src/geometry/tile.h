@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/bits.h"
+#include "base/four.h"
 #include "base/rounding.h"
 
 #include <spawnfield/scene.h>
@@ -90,6 +91,12 @@ struct TileScale {
     std::uint8_t number_of(double coordinate) const
     {
         return std::uint8_t(std::max(0.0, std::min((coordinate - double(low)) * double(per_metre), 255.0)));  // NaN: 0
+    }
+    /// Returns the numbers of two coordinates, each in all bytes.
+    std::array<SixteenBytes, 2> numbers_of(const Two& coordinates) const
+    {
+        const Two numbers = (coordinates - double(low)) * double(per_metre);
+        return in_all_bytes(greatest(least(both(255), numbers), Two{}));  // in this order, NaN becomes 0
     }
 };
 
@@ -217,8 +224,12 @@ struct Tile {
     /// The same for a closed box.
     std::uint64_t near(const Bounds& space) const
     {
-        return marks<0, 3>({number(0, space.min.x()), number(1, space.min.y()), number(2, space.min.z())},
-                           {number(0, space.max.x()), number(1, space.max.y()), number(2, space.max.z())});
+        const auto [low_x, high_x] = head->scales[0].numbers_of(Two{space.min.x(), space.max.x()});
+        const auto [low_y, high_y] = head->scales[1].numbers_of(Two{space.min.y(), space.max.y()});
+        const std::uint64_t from_above = marks<0, 2>({low_x, low_y}, {high_x, high_y});
+        if (from_above == 0) return 0;
+        const auto [low_z, high_z] = head->scales[2].numbers_of(Two{space.min.z(), space.max.z()});
+        return from_above & marks<2, 1>({low_z}, {high_z});
     }
 
 private:
