@@ -2,7 +2,9 @@
 
 #include "base/rect.h"
 #include "free_space/bounds_tile.h"
+#include "free_space/cell_range.h"
 #include "free_space/footprint.h"
+#include "free_space/row_columns.h"
 #include "free_space/row_maxima.h"
 
 #include <spawnfield/column.h>
@@ -13,21 +15,6 @@
 #include <optional>
 
 namespace spawnfield {
-
-/// Columns or rows of cells of a raster, or of one of its tiles; both ends are included.
-struct CellRange {
-    int first, last;
-
-    bool operator==(const CellRange&) const = default;
-    int count() const { return last - first + 1; }
-    /// Returns it counted from another cell.
-    CellRange from(int cell) const { return {first - cell, last - cell}; }
-    /// Returns the part of it that is in the tile which begins at `cell`, counted from there.
-    CellRange in_tile(int cell) const
-    {
-        return {std::max(first - cell, 0), std::min(last - cell, int(BoundsTile::side) - 1)};
-    }
-};
 
 struct FreeSpace::Impl {
     SolidBounds bounds;
@@ -77,7 +64,6 @@ private:
     /// What look_closer() finds in the cells around a part: something above its lowest point, something of which these
     /// cells do not say enough, and something that is certainly inside the part.
     enum Found : std::uint8_t { Above = 1, Undecided = 2, Inside = 4 };
-    static constexpr CellRange no_cells{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
     struct OpenTile {
         BoundsTile tile;
         static constexpr std::uint32_t none = 0xffffffff;
@@ -97,17 +83,19 @@ private:
         {
             return top < (z - tile.base) * inverse_quantum || top == 0;
         }
-        Surroundings around(const CellRange& cols, double bottom, double top);
-        std::uint8_t look_closer(const CellRange& cols, const CellRange& core_cols, const Footprint& part,
-                                 double z) const;
+        void look_around(std::span<const RowColumns::Seen> columns, const Prism& part, std::span<const double> z,
+                         std::span<Surroundings> out);
+        Surroundings between_layers(std::uint64_t columns, double bottom, double top);
+        std::uint8_t look_closer(const RowColumns::Seen& columns, const Footprint& part, double z) const;
     };
     struct Pass {
         std::size_t level;
-        int window = 1;  ///< the number of columns that the part meets, or one more
-        bool is_ready = false;
+        bool is_ready = false;             ///< `rows` are those of the last y
         std::vector<CoverRow> rows;        ///< in the order of their numbers
         std::vector<CellRange> undecided;  ///< for each row: all other cells are proven free at the last pose
         std::array<OpenTile, 4> tiles;     ///< the tiles that were used last; a part may lie on four of them
+        RowColumns columns;                ///< of the poses of a row
+        bool has_columns = false;          ///< `columns` are those of row_x_
     };
     struct Part {
         Footprint footprint;
@@ -131,11 +119,12 @@ private:
     Surroundings surroundings_of(const Part& part, Pass& pass, const Vec3& position) const;
     static Surroundings surroundings_in(const OpenTile& open, const CellRange& cols, const CellRange& rows,
                                         double bottom, double top);
-    void look_around(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
+    void set_row(std::span<const double> x);
+    const RowColumns& columns_of(const Part& part, Pass& pass) const;
+    void look_around(const Part& part, Pass& pass, double y, std::span<const double> z,
                      std::span<Surroundings> out) const;
     static Pass& second_pass(Part& part);
-    void look_closer(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
-                     std::span<Surroundings> out);
+    void look_closer(const Part& part, Pass& pass, double y, std::span<const double> z, std::span<Surroundings> out);
     static bool is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     static bool is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     Proof proof_near(Part& part, const Vec3& position, Surroundings surroundings);
@@ -146,7 +135,8 @@ private:
     const SolidBounds::Impl& raster_;
     std::vector<Part> parts_;
     bool coarse_only_ = false, leaves_layered_ = false;
-    std::vector<Surroundings> surroundings_;               ///< of the poses of a row
+    std::vector<double> row_x_;                            ///< x of the poses of the last row
+    std::vector<Surroundings> surroundings_;               ///< of these poses
     std::vector<std::uint8_t> found_;                      ///< Found bits of these poses
     double y_ = std::numeric_limits<double>::quiet_NaN();  ///< y of the last pose that was not clear; for pass.rows
 };
