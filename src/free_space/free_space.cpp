@@ -129,12 +129,22 @@ void Mask::choose_passes(Part& part) const
         while (level + 1 < raster_.levels().size() && raster_.levels()[level + 1].cell * cells <= width) ++level;
         if (raster_.levels().empty() || (count > 0 && part.passes[count - 1].level == level)) continue;
         if (part.passes.size() <= count) part.passes.emplace_back();
-        if (part.passes[count].level != level) part.passes[count].tiles = {};
-        part.passes[count].level = level;
-        part.passes[count].is_ready = part.passes[count].has_columns = false;
+        set_level(level, part.passes[count]);
         ++count;
     }
     part.passes.resize(count);
+}
+
+void Mask::set_level(std::size_t level, Pass& pass) const
+{
+    pass.is_ready = pass.has_columns = false;
+    if (pass.per_cell != 0 && pass.level == level) return;
+    pass.level = level;
+    pass.per_cell = 1 / raster_.levels()[level].cell;
+    pass.known_cols = int(raster_.whole_cols(level));
+    pass.known_rows = int(raster_.whole_rows(level));
+    pass.tiles = {};
+    pass.last_rows = {};
 }
 
 void Mask::set_y(double y)
@@ -218,11 +228,10 @@ void Mask::cover_rectangle(const Part& part, Pass& pass) const
     pass.is_ready = true;
 }
 
-/// Returns tile (col, row) of the pass's level. Up to four adjacent tiles stay open, because a part may lie on the
-/// corner of four tiles.
-Mask::OpenTile& Mask::tile_of(Pass& pass, std::uint32_t col, std::uint32_t row) const
+/// Returns tile (col, row) of the pass's level.
+const Mask::OpenTile& Mask::tile_of(Pass& pass, std::uint32_t col, std::uint32_t row) const
 {
-    OpenTile& open = pass.tiles[row % 2 * 2 + col % 2];
+    OpenTile& open = pass.tiles[row % Pass::tile_rows * Pass::tile_cols + col % Pass::tile_cols];
     if (col != open.col || row != open.row) open_tile(pass.level, col, row, open);
     return open;
 }
@@ -234,21 +243,19 @@ void Mask::open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, Op
     out.inverse_quantum = out.tile.is_empty() ? 0 : 1 / out.tile.quantum;
     out.col = col;
     out.row = row;
-    out.rows = no_cells;
 }
 
 /// Returns what look_around() finds for one pose. It looks at the cells of this pose only.
 Mask::Surroundings Mask::surroundings_of(const Part& part, Pass& pass, const Vec3& position) const
 {
     constexpr int side = BoundsTile::side;
-    const double per_cell = 1 / raster_.levels()[pass.level].cell, x = position.x() - raster_.x0,
-                 y = position.y() - raster_.y0, bottom = position.z() + part.footprint.outer.bottom,
+    const double per_cell = pass.per_cell, x = position.x() - raster_.x0, y = position.y() - raster_.y0,
+                 bottom = position.z() + part.footprint.outer.bottom,
                  top = position.z() + part.footprint.outer.top;
     const Rect& reach = part.reach;
     const CellRange cols = cells_around((x + reach.low_x) * per_cell, (x + reach.high_x) * per_cell),
                     rows = cells_around((y + reach.low_y) * per_cell, (y + reach.high_y) * per_cell);
-    if (rows.first < 0 || rows.last >= int(raster_.whole_rows(pass.level)) || cols.first < 0 ||
-        cols.last >= int(raster_.whole_cols(pass.level)))
+    if (rows.first < 0 || rows.last >= pass.known_rows || cols.first < 0 || cols.last >= pass.known_cols)
         return Surroundings::Plain;
     for (int row = rows.first / side * side; row <= rows.last; row += side)
         for (int col = cols.first / side * side; col <= cols.last; col += side) {
@@ -270,7 +277,15 @@ Mask::Surroundings Mask::surroundings_in(const OpenTile& open, const CellRange& 
     const std::uint64_t here = bits_between(cols.first, cols.last);
     std::uint64_t listed = 0;
     for (int row = rows.first; row <= rows.last; ++row) listed |= tile.bounds.marks_of(std::uint32_t(row));
-    if ((listed & here) == 0) return Surroundings::Plain;
+    return (listed & here) == 0 ? Surroundings::Plain : between_layers(open, cols, rows, bottom, top);
+}
+
+/// The same for cells some of which have several intervals. Returns Clear or Layered.
+Mask::Surroundings Mask::between_layers(const OpenTile& open, const CellRange& cols, const CellRange& rows,
+                                        double bottom, double top)
+{
+    const BoundsTile& tile = open.tile;
+    const std::uint64_t here = bits_between(cols.first, cols.last);
     std::uint16_t floor = 0, ceiling = std::numeric_limits<std::uint16_t>::max();
     for (int row = rows.first; row <= rows.last; ++row) {
         const auto first = std::uint32_t(row) * BoundsTile::side;
@@ -351,15 +366,14 @@ Mask::Pass& Mask::second_pass(Part& part) { return part.passes[part.passes.size(
 std::optional<Proof> Mask::proof_of_rectangle(const Part& part, Pass& pass, const Vec3& position) const
 {
     constexpr int side = BoundsTile::side;
-    const double per_cell = 1 / raster_.levels()[pass.level].cell, x = position.x() - raster_.x0,
-                 y = position.y() - raster_.y0, z = position.z();
+    const double per_cell = pass.per_cell, x = position.x() - raster_.x0, y = position.y() - raster_.y0,
+                 z = position.z();
     const Rect &reach = part.reach, &core = *part.core;
     const CellRange cols = cells_around((x + reach.low_x) * per_cell, (x + reach.high_x) * per_cell),
                     rows = cells_around((y + reach.low_y) * per_cell, (y + reach.high_y) * per_cell),
                     core_cols = cells_inside((x + core.low_x) * per_cell, (x + core.high_x) * per_cell),
                     core_rows = cells_inside((y + core.low_y) * per_cell, (y + core.high_y) * per_cell);
-    if (cols.first < 0 || cols.last >= int(raster_.whole_cols(pass.level)) || rows.first < 0 ||
-        rows.last >= int(raster_.whole_rows(pass.level)))
+    if (cols.first < 0 || cols.last >= pass.known_cols || rows.first < 0 || rows.last >= pass.known_rows)
         return std::nullopt;
     Heights heights{.bottom = z + part.footprint.outer.bottom,
                     .top = z + part.footprint.outer.top,
@@ -408,7 +422,6 @@ Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x
                     .inner_bottom = z + footprint.inner.bottom,
                     .inner_top = z + footprint.inner.top};
     const double u = (x - raster_.x0) / level.cell;
-    const int known_cols = int(raster_.whole_cols(pass.level)), known_rows = int(raster_.whole_rows(pass.level));
     bool nothing_near = true;
     constexpr int side = BoundsTile::side;
     const OpenTile* open = nullptr;
@@ -426,7 +439,7 @@ Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x
             nothing_near = false;
             undecided = {std::min(undecided.first, from), std::max(undecided.last, to)};
         };
-        if (low < 0 || high >= known_cols || cover.row < 0 || cover.row >= known_rows) {
+        if (low < 0 || high >= pass.known_cols || cover.row < 0 || cover.row >= pass.known_rows) {
             if (!raster_.is_whole) leave(low, high);
             if (high < 0 || low >= int(level.cols) || cover.row < 0 || cover.row >= int(level.rows)) continue;
         }
@@ -458,9 +471,7 @@ Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x
 /// Returns whether the numbers of the cells around a pose fit an int.
 bool Mask::is_in_reach(double x, double y) const
 {
-    constexpr double farthest = 1e8;  // cells
-    return !raster_.levels().empty() && std::abs(x - raster_.x0) < farthest * raster_.levels()[0].cell &&
-           std::abs(y - raster_.y0) < farthest * raster_.levels()[0].cell;
+    return std::abs(x - raster_.x0) < farthest_ && std::abs(y - raster_.y0) < farthest_;
 }
 
 /// Returns the proof for a part whose surroundings are Plain or Layered.

@@ -7,11 +7,17 @@
 
 namespace spawnfield {
 
-/// Sets all that follows for these rows of the tile, and for windows of so many columns. Does nothing if it has been
-/// set for them already: poses of one row of a raster share it.
-void Mask::OpenTile::set_rows(const CellRange& all, int wide, const CellRange& inner, int inner_wide)
+/// Looks at these rows of a tile, and at windows of so many columns. Does nothing if it has looked at them last: rows
+/// of poses that are nearer to each other than cells share them.
+void Mask::TileRows::set(const OpenTile& opened, const CellRange& all, int wide, const CellRange& inner, int inner_wide)
 {
-    if (all == rows && inner == core_rows && wide == whole.wide() && inner_wide == core.wide()) return;
+    open = &opened;
+    if (all == rows && inner == core_rows && col == opened.col && row == opened.row && wide == whole.wide() &&
+        inner_wide == core.wide())
+        return;
+    const BoundsTile& tile = opened.tile;
+    col = opened.col;
+    row = opened.row;
     rows = all;
     core_rows = inner;
     RowMaxima::Values maxima{};
@@ -40,8 +46,9 @@ void Mask::OpenTile::set_rows(const CellRange& all, int wide, const CellRange& i
 }
 
 /// Sets `floors` and `ceilings` for `rows`.
-void Mask::OpenTile::set_gaps()
+void Mask::TileRows::set_gaps()
 {
+    const BoundsTile& tile = open->tile;
     RowMaxima::Values high_floors{}, low_ceilings;
     low_ceilings.fill(std::numeric_limits<std::uint16_t>::max());
     for (auto r = std::uint32_t(rows.first); r <= std::uint32_t(rows.last); ++r) {
@@ -59,14 +66,14 @@ void Mask::OpenTile::set_gaps()
     ceilings = low_ceilings;
 }
 
-/// Looks at the rows that set_rows() got, in the columns of each pose, for what the part meets at heights z. Changes
+/// Looks at the rows that set() got, in the columns of each pose, for what the part meets at heights z. Changes
 /// Clear to Plain or Layered. Poses whose z is NaN stay as they are.
-void Mask::OpenTile::look_around(std::span<const RowColumns::Seen> columns, const Prism& part,
+void Mask::TileRows::look_around(std::span<const RowColumns::Seen> columns, const Prism& part,
                                  std::span<const double> z, std::span<Surroundings> out)
 {
     for (std::size_t i = 0; i < columns.size(); ++i) {
         const double bottom = z[i] + part.bottom;
-        if (are_below(whole.highest(columns[i].all), bottom)) continue;
+        if (open->are_below(whole.highest(columns[i].all), bottom)) continue;
         if (out[i] != Surroundings::Clear || std::isnan(z[i])) continue;
         out[i] = (listed & columns[i].bits) == 0 ? Surroundings::Plain
                                                  : between_layers(columns[i].bits, bottom, z[i] + part.top);
@@ -75,13 +82,13 @@ void Mask::OpenTile::look_around(std::span<const RowColumns::Seen> columns, cons
 
 /// Looks at these columns, in some of which a cell has several intervals, for what lies between two heights, m. Returns
 /// Clear or Layered.
-Mask::Surroundings Mask::OpenTile::between_layers(std::uint64_t columns, double bottom, double top)
+Mask::Surroundings Mask::TileRows::between_layers(std::uint64_t columns, double bottom, double top)
 {
     if (!has_gaps) set_gaps();
     const auto first = std::countr_zero(columns), end = 64 - std::countl_zero(columns);
     const std::uint16_t ceiling = *std::min_element(ceilings.begin() + first, ceilings.begin() + end),
                         floor = *std::max_element(floors.begin() + first, floors.begin() + end);
-    return tile.height(ceiling) > top && are_below(floor, bottom) ? Surroundings::Clear : Surroundings::Layered;
+    return open->tile.height(ceiling) > top && open->are_below(floor, bottom) ? Surroundings::Clear : Surroundings::Layered;
 }
 
 /// Sets the x of the poses that follow.
@@ -98,7 +105,7 @@ const RowColumns& Mask::columns_of(const Part& part, Pass& pass) const
 {
     if (!pass.has_columns)
         pass.columns.set(row_x_, {part.reach, part.core},
-                         {raster_.x0, raster_.levels()[pass.level].cell, int(raster_.whole_cols(pass.level))});
+                         {raster_.x0, raster_.levels()[pass.level].cell, pass.known_cols});
     pass.has_columns = true;
     return pass.columns;
 }
@@ -109,33 +116,34 @@ void Mask::look_around(const Part& part, Pass& pass, double y, std::span<const d
                        std::span<Surroundings> out) const
 {
     constexpr int side = BoundsTile::side;
-    const double per_cell = 1 / raster_.levels()[pass.level].cell, up = y - raster_.y0;
+    const double per_cell = pass.per_cell, up = y - raster_.y0;
     const CellRange rows = cells_around((up + part.reach.low_y) * per_cell, (up + part.reach.high_y) * per_cell);
     const RowColumns& columns = columns_of(part, pass);
-    const bool is_known = columns.fit_windows() && rows.first >= 0 && rows.last < int(raster_.whole_rows(pass.level));
+    const bool is_known = columns.fit_windows() && rows.first >= 0 && rows.last < pass.known_rows;
     std::fill(out.begin(), out.end(), is_known ? Surroundings::Clear : Surroundings::Plain);
     if (!is_known) return;
     for (int row = rows.first / side; row <= rows.last / side; ++row)
         for (const RowColumns::InTile& seen : columns.tiles()) {
-            OpenTile& open = tile_of(pass, seen.col, std::uint32_t(row));
+            const OpenTile& open = tile_of(pass, seen.col, std::uint32_t(row));
             if (open.tile.is_empty()) continue;
-            open.set_rows(rows.in_tile(row * side), columns.wide());
-            open.look_around(columns.seen_in(seen), part.footprint.outer, z.subspan(seen.first_pose, seen.count),
-                             out.subspan(seen.first_pose, seen.count));
+            pass.last_rows.set(open, rows.in_tile(row * side), columns.wide());
+            pass.last_rows.look_around(columns.seen_in(seen), part.footprint.outer,
+                                            z.subspan(seen.first_pose, seen.count),
+                                            out.subspan(seen.first_pose, seen.count));
         }
     for (const std::size_t pose : columns.unknown()) out[pose] = Surroundings::Plain;
 }
 
-/// Looks at the cells around a part and at those inside it, in the rows that set_rows() got. Returns Found bits.
-std::uint8_t Mask::OpenTile::look_closer(const RowColumns::Seen& columns, const Footprint& part, double z) const
+/// Looks at the cells around a part and at those inside it, in the rows that set() got. Returns Found bits.
+std::uint8_t Mask::TileRows::look_closer(const RowColumns::Seen& columns, const Footprint& part, double z) const
 {
-    if (are_below(whole.highest(columns.all), z + part.outer.bottom)) return 0;
+    if (open->are_below(whole.highest(columns.all), z + part.outer.bottom)) return 0;
     const std::uint8_t out = ((listed | filled) & columns.bits) != 0 ? Above | Undecided : Above;
     const std::uint16_t top = core.highest(columns.core);
     if (top == 0) return out;
-    const auto value = [&](double height) { return (height - tile.base) * inverse_quantum; };
+    const auto value = [&](double height) { return (height - open->tile.base) * open->inverse_quantum; };
     if (top > value(z + part.inner.top)) return out | Undecided;
-    return top >= value(z + part.inner.bottom + tile.slack) ? out | Inside : out;
+    return top >= value(z + part.inner.bottom + open->tile.slack) ? out | Inside : out;
 }
 
 /// Does for a whole row of poses what proof_of_rectangle() does for one of them: changes Plain to Clear, Hit or Unclear
@@ -145,27 +153,29 @@ void Mask::look_closer(const Part& part, Pass& pass, double y, std::span<const d
 {
     constexpr int side = BoundsTile::side;
     constexpr double fewest = 2;  // poses for each tile
-    const double per_cell = 1 / raster_.levels()[pass.level].cell, up = y - raster_.y0,
+    const double per_cell = pass.per_cell, up = y - raster_.y0,
                  tiles = (row_x_.back() - row_x_.front()) * per_cell / side + 1;
     if (double(std::count(out.begin(), out.end(), Surroundings::Plain)) < fewest * tiles) return;
     const Rect &reach = part.reach, &core = *part.core;
     const CellRange rows = cells_around((up + reach.low_y) * per_cell, (up + reach.high_y) * per_cell),
                     core_rows = cells_inside((up + core.low_y) * per_cell, (up + core.high_y) * per_cell);
     const RowColumns& columns = columns_of(part, pass);
-    if (!columns.fit_windows() || rows.first < 0 || rows.last >= int(raster_.whole_rows(pass.level))) return;
+    if (!columns.fit_windows() || rows.first < 0 || rows.last >= pass.known_rows) return;
     found_.assign(out.size(), &pass == &part.passes.back() ? 0 : Undecided);
     for (int row = rows.first / side; row <= rows.last / side; ++row)
         for (const RowColumns::InTile& tile : columns.tiles()) {
             const auto begin = out.begin() + std::ptrdiff_t(tile.first_pose), end = begin + std::ptrdiff_t(tile.count);
             const auto first = std::size_t(std::find(begin, end, Surroundings::Plain) - begin);
             if (first == tile.count) continue;
-            OpenTile& open = tile_of(pass, tile.col, std::uint32_t(row));
+            const OpenTile& open = tile_of(pass, tile.col, std::uint32_t(row));
             if (open.tile.is_empty()) continue;
-            open.set_rows(rows.in_tile(row * side), columns.wide(), core_rows.in_tile(row * side), columns.core_wide());
+            TileRows& seen_rows = pass.last_rows;
+            seen_rows.set(open, rows.in_tile(row * side), columns.wide(), core_rows.in_tile(row * side),
+                          columns.core_wide());
             const std::span<const RowColumns::Seen> seen = columns.seen_in(tile);
             for (std::size_t k = first; k < tile.count; ++k)
                 if (const std::size_t i = tile.first_pose + k; out[i] == Surroundings::Plain)
-                    found_[i] |= open.look_closer(seen[k], part.footprint, z[i]);
+                    found_[i] |= seen_rows.look_closer(seen[k], part.footprint, z[i]);
         }
     for (const std::size_t pose : columns.unknown()) found_[pose] = Above | Undecided;
     for (std::size_t i = 0; i < out.size(); ++i) {
