@@ -2,6 +2,7 @@
 #include "free_space/bounds_tile.h"
 #include "free_space/footprint.h"
 #include "free_space/mask.h"
+#include "free_space/sixteen.h"
 #include "query/draw.h"
 #include "slow.h"
 #include "test_map.h"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 using namespace spawnfield;
 
@@ -206,6 +208,34 @@ TEST_CASE("the proofs of a row are true, and the same as those of its poses one 
     for (const std::size_t count : proofs) CHECK(count > 1000);
 }
 
+TEST_CASE("sixteen values are raised and compared like numbers one by one")
+{
+    for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+        Draw draw(seed, 0);
+        const auto value = [&] {  // often the lowest or the highest one
+            return std::uint16_t(std::clamp(draw.uniform(-8192, 65536 + 8192), 0.0, 65535.0));
+        };
+        std::array<std::uint16_t, Sixteen::width> a, b, highest;
+        for (std::size_t k = 0; k < a.size(); ++k) {
+            a[k] = value();
+            b[k] = value();
+        }
+        Sixteen values;
+        values.raise(Sixteen::read(a.data()));
+        values.raise(Sixteen::read(b.data()));
+        values.write(highest.data());
+        const std::uint32_t low = seed % 3 == 0 ? a[0] : value(), high = std::uint32_t{value()} + seed % 2;
+        std::uint64_t within = 0;
+        for (std::size_t k = 0; k < a.size(); ++k) {
+            REQUIRE(highest[k] == std::max(a[k], b[k]));
+            within |= std::uint64_t{highest[k] >= low && highest[k] <= high} << k;
+        }
+        CAPTURE(seed, low, high);
+        REQUIRE(values.bits_within(low, high) == within);
+        REQUIRE(values.bits_within(65536, 65535) == 0);
+    }
+}
+
 TEST_CASE("the highest values of windows of columns are those of a plain search")
 {
     constexpr int side = BoundsTile::side;
@@ -275,10 +305,10 @@ TEST_CASE("the columns of a row of poses are those of each pose, in every tile t
                     REQUIRE((seen.bits >> col & 1) == (col + tile_left >= first && col + tile_left <= last));
                 const int core_first = core ? int(std::ceil(cell(core->low_x))) : 1,
                           core_last = core ? int(std::floor(cell(core->high_x))) - 1 : 0;
-                const bool has_core = core_first <= core_last && core_first < tile_left + side && core_last >= tile_left;
+                const bool has_core = core_first <= core_last && core_first < tile_left + side &&
+                                      core_last >= tile_left;
                 maxima.set(values, found.core_wide());
-                REQUIRE(maxima.highest(seen.core) ==
-                        (has_core ? std::min(core_last - tile_left, side - 1) + 1 : 0));
+                REQUIRE(maxima.highest(seen.core) == (has_core ? std::min(core_last - tile_left, side - 1) + 1 : 0));
                 cores += has_core;
             }
             std::uint64_t expected = 0;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace spawnfield {
@@ -13,10 +12,16 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
+/// Returns a height as a quantized one of a tile, not rounded. Heights beyond those of a tile become 0 or 65536.
+double value_of(const BoundsTile& tile, double inverse_quantum, double z)
+{
+    return std::max(0.0, std::min(65536.0, (z - tile.base) * inverse_quantum));  // faster than std::clamp
+}
+
 /// Returns the largest quantized height of a tile that is below z; 0 if there is none.
 std::uint32_t values_below(const BoundsTile& tile, double inverse_quantum, double z)
 {
-    return std::uint32_t(std::max(0, ceil_of(std::clamp((z - tile.base) * inverse_quantum, 0.0, 65536.0)) - 1));
+    return std::uint32_t(std::max(0, ceil_of(value_of(tile, inverse_quantum, z)) - 1));
 }
 
 /// Returns the lowest interval of a cell for which the test is true; nullptr if there is none. If the test is true for
@@ -41,18 +46,28 @@ void visit_maxima(const BoundsTile& tile, const CellRange& cols, const CellRange
     for (int next = cols.first; next <= cols.last; next += Sixteen::width) {
         const int first = std::min(next, side - Sixteen::width);
         Sixteen highest;
-        for (int row = rows.first; row <= rows.last; ++row) highest.raise(Sixteen::read(tile.tops + row * side + first));
+        for (int row = rows.first; row <= rows.last; ++row)
+            highest.raise(Sixteen::read(tile.tops + row * side + first));
         look(first, highest);
     }
 }
 
-/// Returns a bit for each of these columns in which a top is above a quantized height, in these rows of the tile.
+/// Returns a bit for each of these columns in which a top is above a quantized height, in these rows.
 std::uint64_t columns_above(const BoundsTile& tile, const CellRange& cols, const CellRange& rows, std::uint32_t height)
 {
     std::uint64_t out = 0;
     visit_maxima(tile, cols, rows,
                  [&](int first, const Sixteen& highest) { out |= highest.bits_within(height + 1, 65535) << first; });
     return out & bits_between(cols.first, cols.last);
+}
+
+/// Returns whether one of these cells of a tile has a list.
+bool has_lists(const CellIntervals& lists, const CellRange& cols, const CellRange& rows)
+{
+    if (lists.marks == nullptr) return false;
+    std::uint64_t marks = 0;
+    for (int row = rows.first; row <= rows.last; ++row) marks |= lists.marks[row];
+    return (marks & bits_between(cols.first, cols.last)) != 0;
 }
 
 /// Returns the rectangle around a polygon, along the axes.
@@ -245,42 +260,54 @@ void Mask::open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, Op
     out.row = row;
 }
 
+/// The heights of a part at a pose, in m and as quantized heights of the current tile.
+struct Mask::Heights {
+    double bottom, top, inner_bottom, inner_top;  ///< of the outer and the inner prism, m
+    std::uint32_t below = 0;                      ///< cells whose top is at most this value are below the part
+    std::uint32_t hit_low = 1, hit_high = 0;      ///< an upper end in this range means a hit inside the part
+
+    Heights(const Footprint& part, double z)
+        : bottom(z + part.outer.bottom), top(z + part.outer.top), inner_bottom(z + part.inner.bottom),
+          inner_top(z + part.inner.top)
+    {
+    }
+    void set_below(const OpenTile& open) { below = values_below(open.tile, open.inverse_quantum, bottom); }
+    void set_hits(const OpenTile& open)
+    {
+        const auto value = [&](double z) { return value_of(open.tile, open.inverse_quantum, z); };
+        hit_low = std::uint32_t(std::max(1, ceil_of(value(inner_bottom + open.tile.slack))));
+        hit_high = std::uint32_t(floor_of(value(inner_top)));
+    }
+    bool is_hit(std::uint32_t value) const { return value >= hit_low && value <= hit_high; }
+};
+
 /// Returns what look_around() finds for one pose. It looks at the cells of this pose only.
 Mask::Surroundings Mask::surroundings_of(const Part& part, Pass& pass, const Vec3& position) const
 {
     constexpr int side = BoundsTile::side;
     const double per_cell = pass.per_cell, x = position.x() - raster_.x0, y = position.y() - raster_.y0,
-                 bottom = position.z() + part.footprint.outer.bottom,
-                 top = position.z() + part.footprint.outer.top;
+                 bottom_z = position.z() + part.footprint.outer.bottom;
     const Rect& reach = part.reach;
     const CellRange cols = cells_around((x + reach.low_x) * per_cell, (x + reach.high_x) * per_cell),
                     rows = cells_around((y + reach.low_y) * per_cell, (y + reach.high_y) * per_cell);
     if (rows.first < 0 || rows.last >= pass.known_rows || cols.first < 0 || cols.last >= pass.known_cols)
         return Surroundings::Plain;
-    for (int row = rows.first / side * side; row <= rows.last; row += side)
-        for (int col = cols.first / side * side; col <= cols.last; col += side) {
-            const OpenTile& open = tile_of(pass, std::uint32_t(col / side), std::uint32_t(row / side));
+    for (int bottom = rows.first / side * side; bottom <= rows.last; bottom += side)
+        for (int left = cols.first / side * side; left <= cols.last; left += side) {
+            const OpenTile& open = tile_of(pass, std::uint32_t(left / side), std::uint32_t(bottom / side));
             if (open.tile.is_empty()) continue;
-            const Surroundings found = surroundings_in(open, cols.in_tile(col), rows.in_tile(row), bottom, top);
-            if (found != Surroundings::Clear) return found;
+            const CellRange c = cols.in_tile(left), r = rows.in_tile(bottom);
+            if (columns_above(open.tile, c, r, values_below(open.tile, open.inverse_quantum, bottom_z)) == 0) continue;
+            if (!has_lists(open.tile.bounds, c, r)) return Surroundings::Plain;
+            const double top_z = position.z() + part.footprint.outer.top;
+            if (const Surroundings found = between_layers(open, c, r, bottom_z, top_z); found != Surroundings::Clear)
+                return found;
         }
     return Surroundings::Clear;
 }
 
-/// The same for these cells of one tile.
-Mask::Surroundings Mask::surroundings_in(const OpenTile& open, const CellRange& cols, const CellRange& rows,
-                                         double bottom, double top)
-{
-    const BoundsTile& tile = open.tile;
-    if (columns_above(tile, cols, rows, values_below(tile, open.inverse_quantum, bottom)) == 0)
-        return Surroundings::Clear;
-    const std::uint64_t here = bits_between(cols.first, cols.last);
-    std::uint64_t listed = 0;
-    for (int row = rows.first; row <= rows.last; ++row) listed |= tile.bounds.marks_of(std::uint32_t(row));
-    return (listed & here) == 0 ? Surroundings::Plain : between_layers(open, cols, rows, bottom, top);
-}
-
-/// The same for cells some of which have several intervals. Returns Clear or Layered.
+/// Looks at these cells of a tile, some of which have several intervals, for what lies between two heights, m. Returns
+/// Clear or Layered.
 Mask::Surroundings Mask::between_layers(const OpenTile& open, const CellRange& cols, const CellRange& rows,
                                         double bottom, double top)
 {
@@ -299,22 +326,6 @@ Mask::Surroundings Mask::between_layers(const OpenTile& open, const CellRange& c
     }
     return tile.height(ceiling) > top && open.are_below(floor, bottom) ? Surroundings::Clear : Surroundings::Layered;
 }
-
-/// The heights of a part at a pose, in m and as quantized heights of the current tile.
-struct Mask::Heights {
-    double bottom, top, inner_bottom, inner_top;  ///< of the outer and the inner prism, m
-    std::uint32_t below = 0;                      ///< cells whose top is at most this value are below the part
-    std::uint32_t hit_low = 1, hit_high = 0;      ///< an upper end in this range means a hit inside the part
-
-    void set_tile(const BoundsTile& tile, double inverse_quantum)
-    {
-        const auto value = [&](double z) { return std::clamp((z - tile.base) * inverse_quantum, 0.0, 65536.0); };
-        below = values_below(tile, inverse_quantum, bottom);
-        hit_low = std::uint32_t(std::max(1, ceil_of(value(inner_bottom + tile.slack))));
-        hit_high = std::uint32_t(floor_of(value(inner_top)));
-    }
-    bool is_hit(std::uint32_t value) const { return value >= hit_low && value <= hit_high; }
-};
 
 /// Returns whether something in the cell is certainly inside the part. The cell must lie completely inside the inner
 /// polygon.
@@ -366,8 +377,7 @@ Mask::Pass& Mask::second_pass(Part& part) { return part.passes[part.passes.size(
 std::optional<Proof> Mask::proof_of_rectangle(const Part& part, Pass& pass, const Vec3& position) const
 {
     constexpr int side = BoundsTile::side;
-    const double per_cell = pass.per_cell, x = position.x() - raster_.x0, y = position.y() - raster_.y0,
-                 z = position.z();
+    const double per_cell = pass.per_cell, x = position.x() - raster_.x0, y = position.y() - raster_.y0;
     const Rect &reach = part.reach, &core = *part.core;
     const CellRange cols = cells_around((x + reach.low_x) * per_cell, (x + reach.high_x) * per_cell),
                     rows = cells_around((y + reach.low_y) * per_cell, (y + reach.high_y) * per_cell),
@@ -375,10 +385,7 @@ std::optional<Proof> Mask::proof_of_rectangle(const Part& part, Pass& pass, cons
                     core_rows = cells_inside((y + core.low_y) * per_cell, (y + core.high_y) * per_cell);
     if (cols.first < 0 || cols.last >= pass.known_cols || rows.first < 0 || rows.last >= pass.known_rows)
         return std::nullopt;
-    Heights heights{.bottom = z + part.footprint.outer.bottom,
-                    .top = z + part.footprint.outer.top,
-                    .inner_bottom = z + part.footprint.inner.bottom,
-                    .inner_top = z + part.footprint.inner.top};
+    Heights heights(part.footprint, position.z());
     bool is_free = true, is_decided = true;
     for (int bottom = rows.first / side * side; bottom <= rows.last; bottom += side)
         for (int left = cols.first / side * side; left <= cols.last; left += side) {
@@ -387,10 +394,11 @@ std::optional<Proof> Mask::proof_of_rectangle(const Part& part, Pass& pass, cons
             if (tile.is_empty()) continue;
             // All that follows counts from the tile's first column and row.
             const CellRange c = cols.in_tile(left), r = rows.in_tile(bottom);
-            heights.set_tile(tile, open.inverse_quantum);
+            heights.set_below(open);
             const std::uint64_t above = columns_above(tile, c, r, heights.below);
             if (above == 0) continue;
             is_free = false;
+            heights.set_hits(open);
             const CellRange inner_c = core_cols.in_tile(left);
             std::uint64_t hit = 0, beyond = 0;
             visit_maxima(tile, inner_c, core_rows.in_tile(bottom), [&](int first, const Sixteen& highest) {
@@ -417,10 +425,7 @@ Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x
     const TileLevel& level = raster_.levels()[pass.level];
     const Footprint& footprint = part.footprint;
     const bool has_inner = !footprint.inner.polygon.empty();
-    Heights heights{.bottom = z + footprint.outer.bottom,
-                    .top = z + footprint.outer.top,
-                    .inner_bottom = z + footprint.inner.bottom,
-                    .inner_top = z + footprint.inner.top};
+    Heights heights(footprint, z);
     const double u = (x - raster_.x0) / level.cell;
     bool nothing_near = true;
     constexpr int side = BoundsTile::side;
@@ -452,7 +457,10 @@ Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x
             const auto tile_col = std::uint32_t(col / side), tile_row = std::uint32_t(cover.row / side);
             if (open == nullptr || tile_col != open->col || tile_row != open->row) {
                 open = &tile_of(pass, tile_col, tile_row);
-                if (!open->tile.is_empty()) heights.set_tile(open->tile, open->inverse_quantum);
+                if (!open->tile.is_empty()) {
+                    heights.set_below(*open);
+                    heights.set_hits(*open);
+                }
             }
             const BoundsTile& tile = open->tile;
             for (; col <= end && !tile.is_empty(); ++col) {

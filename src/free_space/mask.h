@@ -79,10 +79,10 @@ private:
     };
     /// Some rows of cells of a tile, seen together.
     struct TileRows {
-        const OpenTile* open = nullptr;                       ///< the tile; valid until the next tile is opened
+        const OpenTile* open = nullptr;                            ///< the tile; valid until the next tile is opened
         std::uint32_t col = OpenTile::none, row = OpenTile::none;  ///< of the tile
-        CellRange rows = no_cells, core_rows = no_cells;  ///< counted from the tile's first row
-        RowMaxima whole, core;                            ///< tops in `rows`, and in `core_rows`
+        CellRange rows = no_cells, core_rows = no_cells;           ///< counted from the tile's first row
+        RowMaxima whole, core;                                     ///< tops in `rows`, and in `core_rows`
         /// A bit for each column in which a cell of `rows` has a list of intervals, or of points that are solid.
         std::uint64_t listed = 0, filled = 0;
         /// If a column is listed: the highest top of the lowest intervals, and the lowest bottom of the second ones.
@@ -133,8 +133,6 @@ private:
     static CellRange open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u);
     bool is_in_reach(double x, double y) const;
     Surroundings surroundings_of(const Part& part, Pass& pass, const Vec3& position) const;
-    static Surroundings surroundings_in(const OpenTile& open, const CellRange& cols, const CellRange& rows,
-                                        double bottom, double top);
     static Surroundings between_layers(const OpenTile& open, const CellRange& cols, const CellRange& rows,
                                        double bottom, double top);
     void set_row(std::span<const double> x);

@@ -88,7 +88,8 @@ Mask::Surroundings Mask::TileRows::between_layers(std::uint64_t columns, double 
     const auto first = std::countr_zero(columns), end = 64 - std::countl_zero(columns);
     const std::uint16_t ceiling = *std::min_element(ceilings.begin() + first, ceilings.begin() + end),
                         floor = *std::max_element(floors.begin() + first, floors.begin() + end);
-    return open->tile.height(ceiling) > top && open->are_below(floor, bottom) ? Surroundings::Clear : Surroundings::Layered;
+    return open->tile.height(ceiling) > top && open->are_below(floor, bottom) ? Surroundings::Clear
+                                                                              : Surroundings::Layered;
 }
 
 /// Sets the x of the poses that follow.
@@ -128,8 +129,8 @@ void Mask::look_around(const Part& part, Pass& pass, double y, std::span<const d
             if (open.tile.is_empty()) continue;
             pass.last_rows.set(open, rows.in_tile(row * side), columns.wide());
             pass.last_rows.look_around(columns.seen_in(seen), part.footprint.outer,
-                                            z.subspan(seen.first_pose, seen.count),
-                                            out.subspan(seen.first_pose, seen.count));
+                                       z.subspan(seen.first_pose, seen.count),
+                                       out.subspan(seen.first_pose, seen.count));
         }
     for (const std::size_t pose : columns.unknown()) out[pose] = Surroundings::Plain;
 }

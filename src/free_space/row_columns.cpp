@@ -20,11 +20,11 @@ void RowColumns::set(std::span<const double> x, const Extent& part, const Raster
     std::size_t first = x.size(), end = 0;  // of the poses that meet no columns beyond the raster
     for (std::size_t i = 0; i < x.size(); ++i) {
         const double from_left = x[i] - raster.x0;
-        const auto& [all, core] = cells_.emplace_back(
-            Cells{cells_around((from_left + reach.low_x) * per_cell, (from_left + reach.high_x) * per_cell),
-                  part.core ? cells_inside((from_left + part.core->low_x) * per_cell,
-                                           (from_left + part.core->high_x) * per_cell)
-                            : no_cells});
+        const auto& [all, core] = cells_.emplace_back(Cells{
+            cells_around((from_left + reach.low_x) * per_cell, (from_left + reach.high_x) * per_cell),
+            part.core
+                ? cells_inside((from_left + part.core->low_x) * per_cell, (from_left + part.core->high_x) * per_cell)
+                : no_cells});
         const bool is_within = all.first >= 0 && all.last < raster.known_cols;
         if (!is_within || !fits(all, wide_) || (core.first <= core.last && !fits(core, core_wide_)))
             unknown_.push_back(i);

@@ -8,8 +8,8 @@
 
 namespace spawnfield {
 
-/// The highest value of neighbouring columns of a tile. It computes this for all windows of columns at once, 16 at a time,
-/// so that the answer for some columns takes two reads.
+/// The highest value of neighbouring columns of a tile. It computes this for all windows of columns at once, 16 at a
+/// time, so that the answer for some columns takes two reads.
 class RowMaxima {
 public:
     using Values = std::array<std::uint16_t, BoundsTile::side>;  ///< one for each column of the tile
@@ -58,7 +58,8 @@ public:
     }
 
 private:
-    static constexpr int left = BoundsTile::side + Sixteen::width;  ///< columns before the tile; windows may begin there
+    static constexpr int left = BoundsTile::side +
+                                Sixteen::width;  ///< columns before the tile; windows may begin there
 
     int wide_ = 1;
     /// For each column from `left` columns before the tile on: the highest value of the window that begins there.
