@@ -2,6 +2,7 @@
 #include "free_space/bounds_tile.h"
 #include "free_space/footprint.h"
 #include "free_space/mask.h"
+#include "free_space/sixteen.h"
 #include "query/draw.h"
 #include "slow.h"
 #include "test_map.h"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 using namespace spawnfield;
 
@@ -177,13 +179,12 @@ TEST_CASE("the proofs of a row are true, and the same as those of its poses one 
             mask.leave_layered_cells();
             other.leave_layered_cells();
         }
+        std::vector<double> x(150), z(x.size());
         for (int row = 0; row < 20; ++row) {
             const double y = draw.uniform(map.bounds.min.y() - 1, map.bounds.max.y() + 1);
-            std::vector<double> x, z;
-            for (int i = 0; i < 150; ++i) {
-                x.push_back(draw.uniform(map.bounds.min.x() - 1, map.bounds.max.x() + 1));
-                z.push_back(draw.uniform(map.bounds.min.z(), map.bounds.max.z() + 0.5));
-            }
+            if (row % 2 == 0)  // else the x of the last row, as in a raster
+                for (double& at : x) at = draw.uniform(map.bounds.min.x() - 1, map.bounds.max.x() + 1);
+            for (double& at : z) at = draw.uniform(map.bounds.min.z(), map.bounds.max.z() + 0.5);
             std::sort(x.begin(), x.end());
             z[7] = std::numeric_limits<double>::quiet_NaN();
             std::vector<Proof> found(x.size());
@@ -198,32 +199,127 @@ TEST_CASE("the proofs of a row are true, and the same as those of its poses one 
                     REQUIRE((found[i] == Proof::Free) == checker.is_free({position, rotation_from_rpy(0, 0, yaw)}));
                 ++proofs[std::size_t(found[i])];
             }
-            x.back() = 1e300;
-            mask.prove(x, y, z, found);
+            std::vector<double> far = x;
+            far.back() = 1e300;
+            mask.prove(far, y, z, found);
             CHECK(std::count(found.begin(), found.end(), Proof::Candidate) == std::ptrdiff_t(found.size()));
         }
     }
     for (const std::size_t count : proofs) CHECK(count > 1000);
 }
 
+TEST_CASE("sixteen values are raised and compared like numbers one by one")
+{
+    for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+        Draw draw(seed, 0);
+        const auto value = [&] {  // often the lowest or the highest one
+            return std::uint16_t(std::clamp(draw.uniform(-8192, 65536 + 8192), 0.0, 65535.0));
+        };
+        std::array<std::uint16_t, Sixteen::width> a, b, highest;
+        for (std::size_t k = 0; k < a.size(); ++k) {
+            a[k] = value();
+            b[k] = value();
+        }
+        Sixteen values;
+        values.raise(Sixteen::read(a.data()));
+        values.raise(Sixteen::read(b.data()));
+        values.write(highest.data());
+        const std::uint32_t low = seed % 3 == 0 ? a[0] : value(), high = std::uint32_t{value()} + seed % 2;
+        std::uint64_t within = 0;
+        for (std::size_t k = 0; k < a.size(); ++k) {
+            REQUIRE(highest[k] == std::max(a[k], b[k]));
+            within |= std::uint64_t{highest[k] >= low && highest[k] <= high} << k;
+        }
+        CAPTURE(seed, low, high);
+        REQUIRE(values.bits_within(low, high) == within);
+        REQUIRE(values.bits_within(65536, 65535) == 0);
+    }
+}
+
 TEST_CASE("the highest values of windows of columns are those of a plain search")
 {
     constexpr int side = BoundsTile::side;
-    for (int wide = 1; wide <= RowMaxima::widest; ++wide) {
-        Draw draw(std::uint64_t(wide), 0);
+    RowMaxima maxima;
+    for (int i = 0; i < 3 * RowMaxima::widest; ++i) {
+        const int wide = 1 + 40 * i % RowMaxima::widest;  // wide and narrow windows in turns
+        Draw draw(std::uint64_t(i), 0);
         RowMaxima::Values values;
-        for (std::uint16_t& value : values) value = std::uint16_t(draw.uniform(0, 65536));
-        RowMaxima maxima;
-        maxima.set(values, wide);
+        for (std::uint16_t& value : values) value = i % 7 == 0 ? 0 : std::uint16_t(draw.uniform(0, 65536));
+        if (i % 7 == 0)
+            maxima.set_zero(wide);
+        else
+            maxima.set(values, wide);
         for (int first = -wide; first < side; ++first)
             for (int last = first + wide - 1; last <= first + wide; ++last) {
                 if (last < 0) continue;
                 const auto highest = std::max_element(values.begin() + std::max(first, 0),
                                                       values.begin() + std::min(last + 1, side));
                 CAPTURE(wide, first, last);
-                REQUIRE(maxima.highest(first, last) == *highest);
+                REQUIRE(maxima.highest(RowMaxima::columns(first, last, wide)) == *highest);
             }
+        REQUIRE(maxima.highest(RowMaxima::Columns()) == 0);
     }
+}
+
+TEST_CASE("the columns of a row of poses are those of each pose, in every tile that it meets")
+{
+    constexpr int side = BoundsTile::side;
+    std::size_t cores = 0, unknown = 0, far = 0;
+    RowColumns found;
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+        Draw draw(seed, 0);
+        const RowColumns::Raster raster{draw.uniform(-5, 5), draw.uniform(0.05, 0.5), int(draw.uniform(1, 700))};
+        const double left = draw.uniform(-3, 0), right = left + draw.uniform(0, 5), rim = draw.uniform(0, 0.6),
+                     end = raster.x0 + raster.known_cols * raster.cell;
+        std::optional<Rect> core;
+        if (seed % 5 != 0) core = Rect{left + rim, 0, right - rim, 0};
+        std::vector<double> x(std::size_t(draw.uniform(1, 150)));
+        for (double& at : x) at = draw.uniform(raster.x0 - 6, end + 6);
+        std::sort(x.begin(), x.end());
+        found.set(x, {{left, 0, right, 0}, core}, raster);
+        REQUIRE(found.fit_windows() == (int(std::floor((right - left) / raster.cell)) + 1 <= RowMaxima::widest));
+        if (!found.fit_windows()) continue;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const auto cell = [&](double offset) { return (x[i] - raster.x0 + offset) * (1 / raster.cell); };
+            const int first = int(std::floor(cell(left))), last = int(std::floor(cell(right)));
+            CAPTURE(seed, i, first, last);
+            if (std::find(found.unknown().begin(), found.unknown().end(), i) != found.unknown().end()) {
+                REQUIRE((first < 0 || last >= raster.known_cols));  // a number of columns fits no window very rarely
+                ++unknown;
+                continue;
+            }
+            REQUIRE((first >= 0 && last < raster.known_cols));
+            std::uint64_t tiles = 0;
+            for (const RowColumns::InTile& tile : found.tiles()) {
+                if (i < tile.first_pose || i >= tile.first_pose + tile.count) continue;
+                tiles += tile.col;
+                const RowColumns::Seen& seen = found.seen_in(tile)[i - tile.first_pose];
+                // The value of a column is its number, so that the highest one is the last one in the tile.
+                RowMaxima::Values values;
+                std::iota(values.begin(), values.end(), std::uint16_t{1});
+                RowMaxima maxima;
+                maxima.set(values, found.wide());
+                const int tile_left = int(tile.col) * side, seen_last = std::min(last - tile_left, side - 1);
+                REQUIRE(maxima.highest(seen.all) == seen_last + 1);
+                for (int col = 0; col < side; ++col)
+                    REQUIRE((seen.bits >> col & 1) == (col + tile_left >= first && col + tile_left <= last));
+                const int core_first = core ? int(std::ceil(cell(core->low_x))) : 1,
+                          core_last = core ? int(std::floor(cell(core->high_x))) - 1 : 0;
+                const bool has_core = core_first <= core_last && core_first < tile_left + side &&
+                                      core_last >= tile_left;
+                maxima.set(values, found.core_wide());
+                REQUIRE(maxima.highest(seen.core) == (has_core ? std::min(core_last - tile_left, side - 1) + 1 : 0));
+                cores += has_core;
+            }
+            std::uint64_t expected = 0;
+            for (int col = first / side; col <= last / side; ++col) expected += std::uint64_t(col);
+            REQUIRE(tiles == expected);
+            far += last / side - first / side;
+        }
+    }
+    CHECK(cores > 5000);
+    CHECK(unknown > 1000);
+    CHECK(far > 1000);
 }
 
 TEST_CASE("footprints bound a part from outside and from inside")

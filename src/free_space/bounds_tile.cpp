@@ -103,13 +103,20 @@ const char* read_list(const char* at, const ListSizes& sizes, CellIntervals& out
     return end;
 }
 
+/// Returns whether each number is larger than the one before it. Looks at all of them, several at a time.
+bool are_ascending(std::span<const std::uint32_t> numbers)
+{
+    std::uint32_t wrong = 0;
+    for (std::size_t k = 1; k < numbers.size(); ++k) wrong |= std::uint32_t(numbers[k - 1] >= numbers[k]);
+    return wrong == 0;
+}
+
 bool is_consistent(const CellIntervals& list, const ListSizes& sizes)
 {
     if (sizes.cells == 0) return true;
     // Each list has intervals, and the next one begins after it.
-    const auto* const end = list.starts + sizes.lists + 1;
     if (list.starts[0] != 0 || list.starts[sizes.lists] != sizes.spans ||
-        std::adjacent_find(list.starts, end, std::greater_equal<>()) != end)
+        !are_ascending({list.starts, sizes.lists + 1}))
         return false;
     if (sizes.is_uniform) return sizes.cells == BoundsTile::cells;
     std::uint32_t marked = 0;

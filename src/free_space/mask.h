@@ -2,7 +2,9 @@
 
 #include "base/rect.h"
 #include "free_space/bounds_tile.h"
+#include "free_space/cell_range.h"
 #include "free_space/footprint.h"
+#include "free_space/row_columns.h"
 #include "free_space/row_maxima.h"
 
 #include <spawnfield/column.h>
@@ -13,21 +15,6 @@
 #include <optional>
 
 namespace spawnfield {
-
-/// Columns or rows of cells of a raster, or of one of its tiles; both ends are included.
-struct CellRange {
-    int first, last;
-
-    bool operator==(const CellRange&) const = default;
-    int count() const { return last - first + 1; }
-    /// Returns it counted from another cell.
-    CellRange from(int cell) const { return {first - cell, last - cell}; }
-    /// Returns the part of it that is in the tile which begins at `cell`, counted from there.
-    CellRange in_tile(int cell) const
-    {
-        return {std::max(first - cell, 0), std::min(last - cell, int(BoundsTile::side) - 1)};
-    }
-};
 
 struct FreeSpace::Impl {
     SolidBounds bounds;
@@ -41,7 +28,9 @@ struct FreeSpace::Impl {
 class Mask {
 public:
     /// The robot is upright at this yaw until another rotation is set.
-    explicit Mask(const FreeSpace::Impl& space, double yaw = 0) : space_(space), raster_(space.bounds.impl())
+    explicit Mask(const FreeSpace::Impl& space, double yaw = 0)
+        : space_(space), raster_(space.bounds.impl()),
+          farthest_(raster_.levels().empty() ? 0 : 1e8 * raster_.levels()[0].cell)
     {
         set_rotation(yaw);
     }
@@ -77,37 +66,51 @@ private:
     /// What look_closer() finds in the cells around a part: something above its lowest point, something of which these
     /// cells do not say enough, and something that is certainly inside the part.
     enum Found : std::uint8_t { Above = 1, Undecided = 2, Inside = 4 };
-    static constexpr CellRange no_cells{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
     struct OpenTile {
         BoundsTile tile;
         static constexpr std::uint32_t none = 0xffffffff;
         std::uint32_t col = none, row = none;
-        double inverse_quantum = 0;                       ///< of the tile
-        CellRange rows = no_cells, core_rows = no_cells;  ///< that set_rows() got
-        RowMaxima whole, core;                            ///< tops in `rows`, and in `core_rows`
+        double inverse_quantum = 0;  ///< of the tile
+
+        bool are_below(std::uint16_t top, double z) const
+        {
+            return top < (z - tile.base) * inverse_quantum || top == 0;
+        }
+    };
+    /// Some rows of cells of a tile, seen together.
+    struct TileRows {
+        const OpenTile* open = nullptr;                            ///< the tile; valid until the next tile is opened
+        std::uint32_t col = OpenTile::none, row = OpenTile::none;  ///< of the tile
+        CellRange rows = no_cells, core_rows = no_cells;           ///< counted from the tile's first row
+        RowMaxima whole, core;                                     ///< tops in `rows`, and in `core_rows`
         /// A bit for each column in which a cell of `rows` has a list of intervals, or of points that are solid.
         std::uint64_t listed = 0, filled = 0;
         /// If a column is listed: the highest top of the lowest intervals, and the lowest bottom of the second ones.
         RowMaxima::Values floors{}, ceilings{};
         bool has_gaps = false;  ///< floors and ceilings are set for these rows
 
-        void set_rows(const CellRange& all, int wide, const CellRange& inner = no_cells, int inner_wide = 1);
+        void set(const OpenTile& opened, const CellRange& all, int wide, const CellRange& inner = no_cells,
+                 int inner_wide = 1);
         void set_gaps();
-        bool are_below(std::uint16_t top, double z) const
-        {
-            return top < (z - tile.base) * inverse_quantum || top == 0;
-        }
-        Surroundings around(const CellRange& cols, double bottom, double top);
-        std::uint8_t look_closer(const CellRange& cols, const CellRange& core_cols, const Footprint& part,
-                                 double z) const;
+        void look_around(std::span<const RowColumns::Seen> columns, const Prism& part, std::span<const double> z,
+                         std::span<Surroundings> out);
+        Surroundings between_layers(std::uint64_t columns, double bottom, double top);
+        std::uint8_t look_closer(const RowColumns::Seen& columns, const Footprint& part, double z) const;
     };
     struct Pass {
+        /// The tiles that were used last: adjacent ones, and all that a block of a raster needs, or most of them.
+        static constexpr std::uint32_t tile_cols = 16, tile_rows = 2;  ///< columns and rows of these tiles
+
         std::size_t level;
-        int window = 1;  ///< the number of columns that the part meets, or one more
-        bool is_ready = false;
+        double per_cell = 0;               ///< 1 / size of a cell, 1/m
+        int known_cols, known_rows;        ///< of cells
+        bool is_ready = false;             ///< `rows` are those of the last y
         std::vector<CoverRow> rows;        ///< in the order of their numbers
         std::vector<CellRange> undecided;  ///< for each row: all other cells are proven free at the last pose
-        std::array<OpenTile, 4> tiles;     ///< the tiles that were used last; a part may lie on four of them
+        std::array<OpenTile, tile_cols * tile_rows> tiles;
+        RowColumns columns;        ///< of the poses of a row
+        bool has_columns = false;  ///< `columns` are those of row_x_
+        TileRows last_rows;        ///< that were seen
     };
     struct Part {
         Footprint footprint;
@@ -121,21 +124,23 @@ private:
 
     void set_footprints(const std::vector<Footprint>& footprints, double cosine, double sine);
     void choose_passes(Part& part) const;
+    void set_level(std::size_t level, Pass& pass) const;
     void set_y(double y);
     void cover(const Part& part, Pass& pass) const;
     void cover_rectangle(const Part& part, Pass& pass) const;
-    OpenTile& tile_of(Pass& pass, std::uint32_t col, std::uint32_t row) const;
+    const OpenTile& tile_of(Pass& pass, std::uint32_t col, std::uint32_t row) const;
     void open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, OpenTile& out) const;
     static CellRange open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u);
     bool is_in_reach(double x, double y) const;
     Surroundings surroundings_of(const Part& part, Pass& pass, const Vec3& position) const;
-    static Surroundings surroundings_in(const OpenTile& open, const CellRange& cols, const CellRange& rows,
-                                        double bottom, double top);
-    void look_around(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
+    static Surroundings between_layers(const OpenTile& open, const CellRange& cols, const CellRange& rows,
+                                       double bottom, double top);
+    void set_row(std::span<const double> x);
+    const RowColumns& columns_of(const Part& part, Pass& pass) const;
+    void look_around(const Part& part, Pass& pass, double y, std::span<const double> z,
                      std::span<Surroundings> out) const;
     static Pass& second_pass(Part& part);
-    void look_closer(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
-                     std::span<Surroundings> out);
+    void look_closer(const Part& part, Pass& pass, double y, std::span<const double> z, std::span<Surroundings> out);
     static bool is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     static bool is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     Proof proof_near(Part& part, const Vec3& position, Surroundings surroundings);
@@ -144,9 +149,11 @@ private:
 
     const FreeSpace::Impl& space_;
     const SolidBounds::Impl& raster_;
+    const double farthest_;  ///< m from the raster's corner; the numbers of cells up to there fit an int
     std::vector<Part> parts_;
     bool coarse_only_ = false, leaves_layered_ = false;
-    std::vector<Surroundings> surroundings_;               ///< of the poses of a row
+    std::vector<double> row_x_;                            ///< x of the poses of the last row
+    std::vector<Surroundings> surroundings_;               ///< of these poses
     std::vector<std::uint8_t> found_;                      ///< Found bits of these poses
     double y_ = std::numeric_limits<double>::quiet_NaN();  ///< y of the last pose that was not clear; for pass.rows
 };

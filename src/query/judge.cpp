@@ -301,10 +301,13 @@ void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const C
         }
         const double terrain = ground[i].terrain;
         const Span surface{terrain, terrain, 0, true, true};
+        if (proofs_[i] == Proof::Blocked || mask_->is_pierced({&surface, 1}, z_[i])) {
+            out[i] = {Verdict::Collision, false};
+            continue;
+        }
         const ColumnView column({&surface, 1}, {}, {});
-        const Proof proof = mask_->is_pierced(column.spans, z_[i]) ? Proof::Blocked : proofs_[i];
         Judgement judged;
-        judge_collision(proof, &column, {x[i], y, z_[i]}, false, judged);
+        check_exactly(&column, {x[i], y, z_[i]}, false, judged);
         out[i] = {judged.verdict, judged.exact_check};
     }
 }
