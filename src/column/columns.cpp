@@ -133,7 +133,8 @@ void Columns::set(const Geometry& geometry, std::span<const Vec2> places)
 {
     static_assert(PlaceGroup::most == Lines::most);
     start(int(places.size()), 1);
-    const double widest = std::min(4 * geometry.impl().tile_side(), PlaceGroup::widest);
+    const Geometry::Impl& impl = geometry.impl();
+    const double widest = std::min(4 * impl.tile_side(), PlaceGroup::widest);
     for (std::size_t begin = 0; begin < places.size();) {
         const std::size_t end = end_of_group(places, begin, widest);
         const PlaceGroup group(places.subspan(begin, end - begin));
@@ -142,13 +143,19 @@ void Columns::set(const Geometry& geometry, std::span<const Vec2> places)
             lines_.slot[i - begin] = std::uint32_t(i);
         }
         const Rect around = rect_around(places.subspan(begin, end - begin));
-        geometry.impl().visit_tiles(around.low_x, around.low_y, around.high_x, around.high_y,
-                                    [&](const Tile& tile, const ElementBox& box) {
-                                        for_each_bit(group.in(box), [&](std::uint32_t line) {
-                                            pair(tile, line, tile.near(lines_.at[line].x(), lines_.at[line].y()));
-                                        });
-                                        add_pairs(tile, box);
-                                    });
+        impl.for_each_tree([&](const Forest& forest, std::size_t t) {
+            const TileTree& tree = forest.trees[t];
+            tree.visit(around.low_x, around.low_y, around.high_x, around.high_y, [&](std::size_t number) {
+                const ElementBox& box = tree.boxes()[number];
+                const std::uint64_t lines = group.in(box);
+                if (lines == 0) return;  // without reading the tile
+                const Tile tile = impl.open(forest, t, number);
+                for_each_bit(lines, [&](std::uint32_t line) {
+                    pair(tile, line, tile.near(lines_.at[line].x(), lines_.at[line].y()));
+                });
+                add_pairs(tile, box);
+            });
+        });
         begin = end;
     }
     complete_all();
