@@ -11,7 +11,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr std::size_t large_file = 64 << 20, page = 4096, most_in_place = 2 << 20;  // bytes
+constexpr std::size_t large_file = 64 << 20, page = 4096, most_in_place = 1 << 20;  // bytes
 
 }  // namespace
 

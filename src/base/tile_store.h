@@ -39,7 +39,7 @@ struct TileLevel {
 /// A tile of a file is used in place, in the mapping, except the first small tiles of a large file: they are copied,
 /// until the copies take a quarter of the file's size. With a page, Linux maps up to 15 others around it, so a query of
 /// few small tiles, far apart, would use 30 times the memory of their bytes. A copy takes 1 microsecond more. The pages
-/// of other tiles of a large file are returned to the system each time that 2 MB of tiles were opened.
+/// of other tiles of a large file are returned to the system each time that 1 MB of tiles were opened.
 class TileStore {
 public:
     TileStore() = default;

@@ -241,6 +241,32 @@ Tile::Tile(std::string_view bytes)
     alive = elements() < TileBoxes::most ? (std::uint64_t{1} << elements()) - 1 : ~std::uint64_t{0};
 }
 
+namespace {
+
+/// Returns whether all indices and labels of a tile's triangles are below their limits. Compares 16 bytes at a time.
+bool has_consistent_triangles(const Tile& tile)
+{
+    if (tile.triangles.empty()) return true;
+    if (tile.vertices.empty() || tile.pieces.empty()) return false;
+    const auto last_vertex = std::uint8_t(tile.vertices.size() - 1), last_piece = std::uint8_t(tile.pieces.size() - 1);
+    constexpr std::size_t width = sizeof(SixteenBytes);
+    const auto sixteen_at = [](const void* records, std::size_t byte) {
+        SixteenBytes out;
+        std::memcpy(&out, static_cast<const char*>(records) + byte, width);
+        return out;
+    };
+    std::array<TileTriangle, width> largest;  // as many bytes as a whole number of SixteenBytes
+    largest.fill({{last_vertex, last_vertex, last_vertex}, last_piece, Label::Water});
+    std::array<TileTriangle, TileBoxes::most> triangles{};
+    std::memcpy(triangles.data(), tile.triangles.data(), tile.triangles.size_bytes());
+    SixteenBytes over{};
+    for (std::size_t byte = 0; byte < tile.triangles.size_bytes(); byte += width)
+        over |= excess(sixteen_at(triangles.data(), byte), sixteen_at(largest.data(), byte % sizeof largest));
+    return bits_of(SixteenBytes(over == 0)) == 0xffff;
+}
+
+}  // namespace
+
 bool is_consistent_tile(std::string_view bytes, const TileLimits& limits)
 {
     if (bytes.size() < sizeof(TileHead)) return false;
@@ -250,11 +276,7 @@ bool is_consistent_tile(std::string_view bytes, const TileLimits& limits)
     if (bytes.size() < size || bytes.size() >= size + tile_alignment) return false;
     if (std::size_t{head.triangles} + head.primitives > TileBoxes::most) return false;
     const Tile tile(bytes);
-    for (const TileTriangle& t : tile.triangles) {
-        for (const std::uint8_t corner : t.corners)
-            if (corner >= tile.vertices.size()) return false;
-        if (t.piece >= tile.pieces.size() || t.label > Label::Water) return false;
-    }
+    if (!has_consistent_triangles(tile)) return false;
     for (const TilePiece& p : tile.pieces)
         if (p.part >= limits.parts || p.group > limits.groups) return false;
     for (const TilePrimitive& p : tile.primitives)

@@ -57,7 +57,8 @@ std::array<Range, 2> split(std::vector<Entry>& entries, const Range& range)
 
 TileTree::TileTree(std::vector<ElementBox> boxes) : boxes_(std::move(boxes))
 {
-    std::vector<ElementBox> children = boxes_;
+    std::vector<ElementBox> of_nodes;
+    std::span<const ElementBox> children = boxes_;
     while (levels_.empty() ? !children.empty() : children.size() > 1) {
         std::vector<Node> nodes((children.size() + width - 1) / width);
         std::vector<ElementBox> around(nodes.size(), empty_box());
@@ -72,7 +73,8 @@ TileTree::TileTree(std::vector<ElementBox> boxes) : boxes_(std::move(boxes))
                 if (exists) extend(around[n], children[child]);
             }
         levels_.push_back(std::move(nodes));
-        children = std::move(around);
+        of_nodes = std::move(around);
+        children = of_nodes;
     }
 }
 

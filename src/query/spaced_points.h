@@ -8,12 +8,12 @@
 
 namespace spawnfield {
 
-/// Points in a hash grid. The cells are as large as the distance, so a look-up examines 27 cells: nine rows of three
+/// Points in a hash grid. The cells are twice as large as the distance, so a look-up examines 8 cells: four rows of two
 /// adjacent table entries. Cells that share an entry also share its list of points. This is harmless, because the
 /// distances decide. Source: Bridson, Fast Poisson Disk Sampling in Arbitrary Dimensions, 2007 (the background grid).
 class SpacedPoints {
 public:
-    explicit SpacedPoints(double distance) : distance_(distance) {}
+    explicit SpacedPoints(double distance) : distance_(distance), reach_(std::min(distance * (1 + slack), farthest)) {}
 
     double distance() const { return distance_; }
 
@@ -29,12 +29,13 @@ public:
     bool any_near(const Vec3& point, const Test& test) const
     {
         if (points_.empty()) return false;
-        const Cell centre = cell_of(point);
-        for (std::uint64_t dz = 0; dz < 3; ++dz)
-            for (std::uint64_t dy = 0; dy < 3; ++dy) {
-                const std::uint64_t row = row_start(centre[1] + dy - 1, centre[2] + dz - 1) + centre[0];
-                for (std::uint64_t dx = 0; dx < 3; ++dx)
-                    for (std::uint32_t i = heads_[(row + dx - 1) & mask_]; i != none; i = points_[i].next)
+        const Vec3 around = Vec3::Constant(reach_);
+        const Cell first = cell_of(point - around), last = cell_of(point + around);
+        for (std::uint64_t z = first[2]; z != last[2] + 1; ++z)
+            for (std::uint64_t y = first[1]; y != last[1] + 1; ++y) {
+                const std::uint64_t row = row_start(y, z);
+                for (std::uint64_t x = first[0]; x != last[0] + 1; ++x)
+                    for (std::uint32_t i = heads_[(row + x) & mask_]; i != none; i = points_[i].next)
                         if (test(points_[i].position)) return true;
             }
         return false;
@@ -67,6 +68,8 @@ private:
     };
     static constexpr std::uint32_t none = 0xffffffff;
     static constexpr std::size_t smallest = 4096;
+    static constexpr double slack = 1e-6;      // of the distance; more than rounding errors of coordinates
+    static constexpr double farthest = 1e300;  // m; so no sum of a coordinate and reach_ is infinite
 
     static std::uint64_t row_start(std::uint64_t y, std::uint64_t z)
     {
@@ -76,11 +79,11 @@ private:
 
     Cell cell_of(const Vec3& point) const
     {
-        constexpr double farthest = 9e18;  // cells; points farther away are put into the outermost cells
+        constexpr double last = 9e18;  // cells; points farther away are put into the outermost cells
         Cell cell{};
         for (int axis = 0; axis < 3; ++axis)
             cell[axis] = std::uint64_t(
-                std::int64_t(std::clamp(std::floor(point[axis] / distance_), -farthest, farthest)));
+                std::int64_t(std::clamp(std::floor(point[axis] / (2 * distance_)), -last, last)));
         return cell;
     }
 
@@ -92,7 +95,7 @@ private:
         head = i;
     }
 
-    const double distance_;
+    const double distance_, reach_;  ///< m
     std::vector<Point> points_;
     std::vector<std::uint32_t> heads_;  ///< index of the last point of each table entry; the size is a power of 2
     std::uint64_t mask_ = 0;
