@@ -183,7 +183,7 @@ TEST_CASE("a search in a box finds what the rectangle below it has at these heig
         const Vec3 low{random.between(-1, 9), random.between(-1, 9), random.between(-2, 60)};
         const Bounds space{low, low + Vec3{random.between(0, 2), random.between(0, 2), random.between(0, 3)}};
         std::vector<std::uint32_t> expected, visited;
-        geometry.impl().visit_in(space.min.x(), space.min.y(), space.max.x(), space.max.y(),
+        geometry.impl().visit_in({space.min.x(), space.min.y(), space.max.x(), space.max.y()},
                                  [&](const Tile& tile, std::uint32_t element) {
                                      const ElementBox box = tile.box(element);
                                      if (box.min[2] <= space.max.z() && box.max[2] >= space.min.z())

@@ -170,7 +170,7 @@ TEST_CASE("every altered byte is detected: by queries in what they read, by veri
                 const auto read_all = [&] {
                     read_map(temp / "map")
                         .geometry.impl()
-                        .visit_in(-1e9, -1e9, 1e9, 1e9, [](const Tile&, std::uint32_t) {});
+                        .visit_in({-1e9, -1e9, 1e9, 1e9}, [](const Tile&, std::uint32_t) {});
                 };
                 CHECK_THROWS_WITH(read_all(), Contains(name));
             }

@@ -7,6 +7,9 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
@@ -41,6 +44,24 @@ bool is_copy(const TileStore& store, std::string_view tile)
 {
     const char* const first = store.bytes().data();
     return tile.data() < first || tile.data() >= first + store.bytes().size();
+}
+
+/// Returns how much of the mapping that contains an address is in memory, bytes: Rss in /proc/self/smaps.
+std::size_t resident_around(const char* address)
+{
+    std::ifstream in("/proc/self/smaps");
+    const auto wanted = reinterpret_cast<std::uintptr_t>(address);
+    bool is_wanted = false;
+    for (std::string line; std::getline(in, line);) {
+        std::uintptr_t from = 0, to = 0;
+        std::size_t kilobytes = 0;
+        if (std::sscanf(line.c_str(), "%" SCNxPTR "-%" SCNxPTR " ", &from, &to) == 2)
+            is_wanted = wanted >= from && wanted < to;
+        else if (is_wanted && std::sscanf(line.c_str(), "Rss: %zu kB", &kilobytes) == 1)
+            return kilobytes << 10;
+    }
+    FAIL("no mapping contains the address");
+    return 0;
 }
 
 const auto trust = [](std::string_view) { return true; };
@@ -80,6 +101,26 @@ TEST_CASE("no tile is copied in a small file, or if all tiles are expected to be
     store.expect_all();
     CHECK(is_copy(store, store.open(0, 3, trust)));
     CHECK_FALSE(is_copy(store, store.open(0, 4, trust)));
+}
+
+TEST_CASE("the pages of a large file are returned to the system while its tiles are opened, unless all are expected")
+{
+    const SparseFile folder(large);
+    for (const bool expects_all : {false, true}) {
+        CAPTURE(expects_all);
+        const TileStore store = folder.open();
+        if (expects_all) store.expect_all();
+        std::size_t most = 0;
+        const std::size_t count = store.levels()[0].tiles.size();
+        for (std::size_t t = 0; t < count; ++t) {
+            store.open(0, t, trust);
+            if (t % 256 == 0) most = std::max(most, resident_around(store.bytes().data()));
+        }
+        if (expects_all)
+            CHECK(most > large / 2);
+        else
+            CHECK(most < large / 4);
+    }
 }
 
 TEST_CASE("a copied tile is checked, and a file that becomes shorter is an error")

@@ -12,12 +12,9 @@ void TileBins::find(const Bounds& area)
     found_.clear();
     opened_.clear();
     probable_ = 0;
-    geometry_.for_each_tree([&](const Forest& forest, std::size_t t) {
-        const TileTree& tree = forest.trees[t];
-        tree.visit(area, [&](std::size_t number) {
-            binned_.push_back({limits_of(tree.boxes()[number]), {}});
-            found_.push_back({&forest, std::uint32_t(t), std::uint32_t(number)});
-        });
+    geometry_.find_tiles(area, [&](const Forest& forest, std::size_t tree, std::size_t tile, const ElementBox& box) {
+        binned_.push_back({limits_of(box), {}});
+        found_.push_back({&forest, std::uint32_t(tree), std::uint32_t(tile)});
     });
     fill_bins();
 }

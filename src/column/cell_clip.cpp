@@ -287,8 +287,9 @@ CellSpans::CellSpans(const Geometry& geometry, const CellBlock& block)
 {
     Collector collector(*this, block);
     geometry.impl().visit_in(
-        block.x0 - touch_tolerance, block.y0 - touch_tolerance, block.x0 + block.cols * block.cell + touch_tolerance,
-        block.y0 + block.rows * block.cell + touch_tolerance, [&](const Tile& tile, std::uint32_t element) {
+        {block.x0 - touch_tolerance, block.y0 - touch_tolerance, block.x0 + block.cols * block.cell + touch_tolerance,
+         block.y0 + block.rows * block.cell + touch_tolerance},
+        [&](const Tile& tile, std::uint32_t element) {
             if (tile.label(element) == Label::Water) return;
             if (!tile.is_triangle(element)) {
                 collector.add_primitive(tile.primitive(element).shape());

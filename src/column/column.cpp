@@ -19,7 +19,7 @@ std::uint64_t counted(const Tile& tile, std::uint64_t elements, Surfaces surface
 void find_hits(const Geometry& geometry, double x, double y, Surfaces surfaces, std::vector<SurfaceHit>& hits)
 {
     hits.clear();
-    geometry.impl().visit_tiles(x, y, x, y, [&](const Tile& tile, const ElementBox&) {
+    geometry.impl().visit_tiles(Rect{x, y, x, y}, [&](const Tile& tile, const ElementBox&) {
         for_each_bit(counted(tile, tile.near(x, y), surfaces), [&](std::uint32_t element) {
             if (const auto hit = hit_of(tile, element, x, y)) hits.push_back(*hit);
         });

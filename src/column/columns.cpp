@@ -120,9 +120,9 @@ void Columns::set(const Geometry& geometry, const ColumnGrid& grid, Surfaces sur
 {
     start(grid.cols, grid.rows);
     if (count_ == 0) return;
-    const double elements = geometry.impl().elements_near(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
-                                                          grid.x_of(grid.first_col + grid.cols),
-                                                          grid.y_of(grid.first_row + grid.rows));
+    const double elements = geometry.impl().elements_near({grid.x_of(grid.first_col), grid.y_of(grid.first_row),
+                                                           grid.x_of(grid.first_col + grid.cols),
+                                                           grid.y_of(grid.first_row + grid.rows)});
     constexpr double elements_per_look_up = 50;  // so many elements are scanned in the time of one look-up
     are_dense_ = elements <= elements_per_look_up * double(count_);
     are_dense_ ? scan(geometry, grid, surfaces) : look_up(geometry, grid, surfaces);
@@ -143,18 +143,14 @@ void Columns::set(const Geometry& geometry, std::span<const Vec2> places)
             lines_.slot[i - begin] = std::uint32_t(i);
         }
         const Rect around = rect_around(places.subspan(begin, end - begin));
-        impl.for_each_tree([&](const Forest& forest, std::size_t t) {
-            const TileTree& tree = forest.trees[t];
-            tree.visit(around.low_x, around.low_y, around.high_x, around.high_y, [&](std::size_t number) {
-                const ElementBox& box = tree.boxes()[number];
-                const std::uint64_t lines = group.in(box);
-                if (lines == 0) return;  // without reading the tile
-                const Tile tile = impl.open(forest, t, number);
-                for_each_bit(lines, [&](std::uint32_t line) {
-                    pair(tile, line, tile.near(lines_.at[line].x(), lines_.at[line].y()));
-                });
-                add_pairs(tile, box);
+        impl.find_tiles(around, [&](const Forest& forest, std::size_t tree, std::size_t number, const ElementBox& box) {
+            const std::uint64_t lines = group.in(box);
+            if (lines == 0) return;
+            const Tile tile = impl.open(forest, tree, number);
+            for_each_bit(lines, [&](std::uint32_t line) {
+                pair(tile, line, tile.near(lines_.at[line].x(), lines_.at[line].y()));
             });
+            add_pairs(tile, box);
         });
         begin = end;
     }
@@ -180,8 +176,8 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
     y_.resize(std::size_t(grid.rows));
     for (std::size_t j = 0; j < y_.size(); ++j) y_[j] = grid.y_of(grid.first_row + int(j));
     const BlockIndex index(grid);
-    const double low_x = x_[0], high_x = x_[std::size_t(grid.cols) - 1], low_y = y_.front(), high_y = y_.back();
-    geometry.impl().visit_whole_tiles(low_x, low_y, high_x, high_y, [&](const Tile& tile, const ElementBox& box) {
+    const Rect area{x_[0], y_.front(), x_[std::size_t(grid.cols) - 1], y_.back()};
+    geometry.impl().visit_whole_tiles(area, [&](const Tile& tile, const ElementBox& box) {
         ColumnRange range;
         if (!index.find({box.min[0], box.min[1]}, {box.max[0], box.max[1]}, range)) return;
         const auto columns = std::uint32_t(range.last_col + 1 - range.first_col) *
@@ -190,7 +186,7 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
             add_columns(tile, box, surfaces, range);
             return;
         }
-        const std::uint64_t elements = counted(tile, tile.near(low_x, low_y, high_x, high_y), surfaces);
+        const std::uint64_t elements = counted(tile, tile.near(area), surfaces);
         for_each_bit(elements, [&](std::uint32_t element) {
             if (!tile.is_triangle(element)) {
                 const Bounds bounds = tile.bounds(element);

@@ -48,15 +48,14 @@ std::optional<Column> uniform_column(const Geometry& geometry, const Rect& rect)
     const Rect wider{rect.low_x - reach, rect.low_y - reach, rect.high_x + reach, rect.high_y + reach};
     std::vector<SurfaceHit> hits;
     bool is_uniform = true;
-    geometry.impl().visit_in(wider.low_x, wider.low_y, wider.high_x, wider.high_y,
-                             [&](const Tile& tile, std::uint32_t element) {
-                                 if (!is_uniform) return;
-                                 is_uniform = tile.is_triangle(element);
-                                 if (!is_uniform || misses(tile.corners(element), wider)) return;
-                                 const auto hit = uniform_hit(tile, element, wider);
-                                 is_uniform = hit.has_value();
-                                 if (hit) hits.push_back(*hit);
-                             });
+    geometry.impl().visit_in(wider, [&](const Tile& tile, std::uint32_t element) {
+        if (!is_uniform) return;
+        is_uniform = tile.is_triangle(element);
+        if (!is_uniform || misses(tile.corners(element), wider)) return;
+        const auto hit = uniform_hit(tile, element, wider);
+        is_uniform = hit.has_value();
+        if (hit) hits.push_back(*hit);
+    });
     if (!is_uniform) return std::nullopt;
     std::sort(hits.begin(), hits.end(), [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; });
     Column out;

@@ -39,7 +39,7 @@ ElementBox box_around(const std::vector<ElementBox>& boxes, std::span<const std:
 
 }  // namespace
 
-double Geometry::Impl::elements_near(double low_x, double low_y, double high_x, double high_y) const
+double Geometry::Impl::elements_near(const Rect& area) const
 {
     constexpr double bytes_per_element = 40;
     // Returns the share of from .. to that lies in low .. high.
@@ -47,12 +47,10 @@ double Geometry::Impl::elements_near(double low_x, double low_y, double high_x, 
         return to > from ? std::clamp((std::min(high, to) - std::max(low, from)) / (to - from), 0.0, 1.0) : 1.0;
     };
     double sum = 0;
-    for_each_tree([&](const Forest& forest, std::size_t t) {
-        forest.trees[t].visit(low_x, low_y, high_x, high_y, [&](std::size_t number) {
-            const ElementBox& box = forest.trees[t].boxes()[number];
-            sum += double(forest.tiles.levels()[t].tiles[number].size) * share(low_x, high_x, box.min[0], box.max[0]) *
-                   share(low_y, high_y, box.min[1], box.max[1]);
-        });
+    find_tiles(area, [&](const Forest& forest, std::size_t tree, std::size_t tile, const ElementBox& box) {
+        sum += double(forest.tiles.levels()[tree].tiles[tile].size) *
+               share(area.low_x, area.high_x, box.min[0], box.max[0]) *
+               share(area.low_y, area.high_y, box.min[1], box.max[1]);
     });
     return sum / bytes_per_element;
 }

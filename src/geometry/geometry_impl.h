@@ -50,44 +50,44 @@ struct Geometry::Impl {
         return alive(Tile(forest.bytes_of(tree, tile)));
     }
 
+    /// Calls visit(forest, tree, tile, box) for each tile whose box meets a closed Rect or Bounds, and for a few others
+    /// near it, without opening it.
+    template <class Space, class Visit>
+    void find_tiles(const Space& space, const Visit& visit) const
+    {
+        for_each_tree([&](const Forest& forest, std::size_t t) {
+            const TileTree& tree = forest.trees[t];
+            tree.visit(space, [&](std::size_t tile) { visit(forest, t, tile, tree.boxes()[tile]); });
+        });
+    }
+
+    /// Calls visit(tile, box) for each of these tiles.
+    template <class Space, class Visit>
+    void visit_tiles(const Space& space, const Visit& visit) const
+    {
+        find_tiles(space, [&](const Forest& forest, std::size_t tree, std::size_t tile, const ElementBox& box) {
+            visit(open(forest, tree, tile), box);
+        });
+    }
+
     /// Calls visit(tile, element) once for each element whose box meets the closed rectangle.
     template <class Visit>
-    void visit_in(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
+    void visit_in(const Rect& area, const Visit& visit) const
     {
-        visit_tiles(low_x, low_y, high_x, high_y, [&](const Tile& tile, const ElementBox&) {
-            for_each_bit(tile.near(low_x, low_y, high_x, high_y), [&](std::uint32_t element) {
+        visit_tiles(area, [&](const Tile& tile, const ElementBox&) {
+            for_each_bit(tile.near(area), [&](std::uint32_t element) {
                 const ElementBox box = tile.box(element);
-                if (box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y)
+                if (box.min[0] <= area.high_x && box.max[0] >= area.low_x && box.min[1] <= area.high_y &&
+                    box.max[1] >= area.low_y)
                     visit(tile, element);
             });
-        });
-    }
-
-    /// Calls visit(tile, box) for each tile whose box meets the closed rectangle, and for a few others near it.
-    template <class Visit>
-    void visit_tiles(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
-    {
-        for_each_tree([&](const Forest& forest, std::size_t t) {
-            const TileTree& tree = forest.trees[t];
-            tree.visit(low_x, low_y, high_x, high_y,
-                       [&](std::size_t number) { visit(open(forest, t, number), tree.boxes()[number]); });
-        });
-    }
-
-    /// The same for a closed box.
-    template <class Visit>
-    void visit_tiles(const Bounds& space, const Visit& visit) const
-    {
-        for_each_tree([&](const Forest& forest, std::size_t t) {
-            const TileTree& tree = forest.trees[t];
-            tree.visit(space, [&](std::size_t number) { visit(open(forest, t, number), tree.boxes()[number]); });
         });
     }
 
     /// Does the same as visit_tiles, for callers that read most of each tile: while a tile is visited, the processor
     /// already fetches the next one from memory.
     template <class Visit>
-    void visit_whole_tiles(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
+    void visit_whole_tiles(const Rect& area, const Visit& visit) const
     {
         constexpr std::size_t line = 64, none = std::size_t(-1);  // bytes of a cache line; no tile
         for_each_tree([&](const Forest& forest, std::size_t t) {
@@ -96,7 +96,7 @@ struct Geometry::Impl {
             const auto visit_next = [&] {
                 if (next_tile != none) visit(open(forest, t, next_tile), tree.boxes()[next_tile]);
             };
-            tree.visit(low_x, low_y, high_x, high_y, [&](std::size_t number) {
+            tree.visit(area, [&](std::size_t number) {
                 const std::string_view bytes = forest.bytes_of(t, number);
                 for (std::size_t at = 0; at < bytes.size(); at += line) __builtin_prefetch(bytes.data() + at);
                 visit_next();
@@ -108,7 +108,7 @@ struct Geometry::Impl {
 
     /// Estimates how many elements lie in a rectangle, from the sizes of the tiles that it meets. Each tile counts by
     /// the share of its area in the rectangle.
-    double elements_near(double low_x, double low_y, double high_x, double high_y) const;
+    double elements_near(const Rect& area) const;
 
     /// Returns the side of a square that has as many elements as a tile, if they are spread evenly, m.
     double tile_side() const;

@@ -2,6 +2,7 @@
 
 #include "base/bits.h"
 #include "base/four.h"
+#include "base/rect.h"
 #include "base/rounding.h"
 
 #include <spawnfield/scene.h>
@@ -200,9 +201,10 @@ struct Tile {
 
     /// Returns a bit for each element that is alive and whose box may meet the closed rectangle. If it is 0, the box
     /// certainly does not meet it.
-    std::uint64_t near(double low_x, double low_y, double high_x, double high_y) const
+    std::uint64_t near(const Rect& area) const
     {
-        return marks<0, 2>({number(0, low_x), number(1, low_y)}, {number(0, high_x), number(1, high_y)});
+        return marks<0, 2>({number(0, area.low_x), number(1, area.low_y)},
+                           {number(0, area.high_x), number(1, area.high_y)});
     }
     /// The same for a point.
     std::uint64_t near(double x, double y) const

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/bits.h"
+#include "base/rect.h"
 #include "geometry/tile.h"
 
 #include <vector>
@@ -20,9 +21,9 @@ public:
     /// Calls visit(tile) for the number of each tile whose box meets the closed rectangle, ascending. May visit tiles
     /// that miss it by the rounding error of a float.
     template <class Visit>
-    void visit(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
+    void visit(const Rect& area, const Visit& visit) const
     {
-        visit_nodes<2>({low_x, low_y}, {high_x, high_y}, visit);
+        visit_nodes<2>({area.low_x, area.low_y}, {area.high_x, area.high_y}, visit);
     }
     /// The same for a closed box.
     template <class Visit>

@@ -65,27 +65,25 @@ void Remainder::take(const SmallPolygon& polygon)
 
 CellFacets::CellFacets(const Geometry& geometry, const Rect& cell) : cell_(cell), corners_(corners_of(cell))
 {
-    geometry.impl().visit_in(cell.low_x, cell.low_y, cell.high_x, cell.high_y,
-                             [&](const Tile& tile, std::uint32_t element) {
-                                 const ElementBox box = tile.box(element);
-                                 if (tile.label(element) == Label::Terrain) {
-                                     terrain.bottom = std::min(terrain.bottom, double(box.min[2]));
-                                     terrain.top = std::max(terrain.top, double(box.max[2]));
-                                 }
-                                 has_too_many = has_too_many || all.size() >= most_facets;
-                                 if (has_too_many) return;
-                                 if (tile.is_triangle(element))
-                                     add_triangle(tile, element, false);
-                                 else
-                                     add_primitive(tile, element);
-                             });
+    geometry.impl().visit_in(cell, [&](const Tile& tile, std::uint32_t element) {
+        const ElementBox box = tile.box(element);
+        if (tile.label(element) == Label::Terrain) {
+            terrain.bottom = std::min(terrain.bottom, double(box.min[2]));
+            terrain.top = std::max(terrain.top, double(box.max[2]));
+        }
+        has_too_many = has_too_many || all.size() >= most_facets;
+        if (has_too_many) return;
+        if (tile.is_triangle(element))
+            add_triangle(tile, element, false);
+        else
+            add_primitive(tile, element);
+    });
     if (!has_too_many && has_filled_terrain_) {
         // The other faces of filled meshes count too, because they separate the inside from the outside.
-        geometry.impl().visit_in(cell.low_x, cell.low_y, cell.high_x, cell.high_y,
-                                 [&](const Tile& tile, std::uint32_t element) {
-                                     has_too_many = has_too_many || all.size() >= most_facets;
-                                     if (tile.is_triangle(element) && !has_too_many) add_triangle(tile, element, true);
-                                 });
+        geometry.impl().visit_in(cell, [&](const Tile& tile, std::uint32_t element) {
+            has_too_many = has_too_many || all.size() >= most_facets;
+            if (tile.is_triangle(element) && !has_too_many) add_triangle(tile, element, true);
+        });
     }
     if (has_too_many) return;
     // The rounding of proofs depends on the order, and the order of tiles is another one in a changed scene.

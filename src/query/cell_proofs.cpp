@@ -200,20 +200,19 @@ private:
     {
         const auto holds = [&](const Interval& span) { return span.bottom <= z.bottom && span.top >= z.top; };
         bool in_primitive = false, meets_other = false;
-        proofs_.shared_.map.geometry.impl().visit_in(
-            rect.low_x, rect.low_y, rect.high_x, rect.high_y, [&](const Tile& tile, std::uint32_t element) {
-                const ElementBox box = tile.box(element);
-                const Label label = tile.label(element);
-                if (in_primitive || label == Label::Water || box.min[2] > z.top || box.max[2] < z.bottom) return;
-                meets_other = true;
-                if (tile.is_triangle(element)) return;
-                const Shape shape = tile.primitive(element).shape();
-                const SmallPolygon corners = corners_of(rect);
-                in_primitive = std::all_of(corners.begin(), corners.end(), [&](const Vec2& p) {
-                    const auto span = vertical_interval(shape, p.x(), p.y());
-                    return span && holds(*span);
-                });
+        proofs_.shared_.map.geometry.impl().visit_in(rect, [&](const Tile& tile, std::uint32_t element) {
+            const ElementBox box = tile.box(element);
+            const Label label = tile.label(element);
+            if (in_primitive || label == Label::Water || box.min[2] > z.top || box.max[2] < z.bottom) return;
+            meets_other = true;
+            if (tile.is_triangle(element)) return;
+            const Shape shape = tile.primitive(element).shape();
+            const SmallPolygon corners = corners_of(rect);
+            in_primitive = std::all_of(corners.begin(), corners.end(), [&](const Vec2& p) {
+                const auto span = vertical_interval(shape, p.x(), p.y());
+                return span && holds(*span);
             });
+        });
         if (in_primitive || meets_other) return in_primitive;
         const Column column = column_at(proofs_.shared_.map.geometry, rect.centre_x(), rect.centre_y());
         return std::any_of(column.spans.begin(), column.spans.end(), [&](const Span& span) {

@@ -157,7 +157,7 @@ void LevelGround::set_place(const Vec2& place, double radius)
     solids_.clear();
     is_unsealed_ = has_water_ = false;
     shared_.map.geometry.impl().visit_in(
-        place.x() - radius, place.y() - radius, place.x() + radius, place.y() + radius,
+        {place.x() - radius, place.y() - radius, place.x() + radius, place.y() + radius},
         [&](const Tile& tile, auto element) {
             const Label label = tile.label(element);
             is_unsealed_ |= tile.is_triangle(element) && tile.piece(element).open != 0;

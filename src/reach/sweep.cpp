@@ -76,7 +76,7 @@ void Sweep::set_place(const Vec2& place, double radius)
 {
     origin_ = {place.x(), place.y(), 0};
     solids_.clear();
-    geometry_.impl().visit_in(place.x() - radius, place.y() - radius, place.x() + radius, place.y() + radius,
+    geometry_.impl().visit_in({place.x() - radius, place.y() - radius, place.x() + radius, place.y() + radius},
                               [&](const Tile& tile, auto element) {
                                   if (tile.label(element) == Label::Water || tile.label(element) == Label::Ignore)
                                       return;

@@ -141,16 +141,15 @@ void NearSolids::find(const Rect& area)
     tiles_.clear();
     found_.clear();
     const Limits limits(area);
-    geometry_.impl().visit_tiles(
-        area.low_x, area.low_y, area.high_x, area.high_y, [&](const Tile& tile, const ElementBox&) {
-            for_each_bit(tile.near(area.low_x, area.low_y, area.high_x, area.high_y), [&](std::uint32_t number) {
-                const Label label = tile.label(number);
-                if (label == Label::Water || label == Label::Ignore) return;
-                if (const ElementBox box = tile.box(number); limits.meet(box))
-                    found_.push_back({tile.order(number), std::uint32_t(tiles_.size()), number, box});
-            });
-            if (!found_.empty() && found_.back().tile == tiles_.size()) tiles_.push_back(tile);
+    geometry_.impl().visit_tiles(area, [&](const Tile& tile, const ElementBox&) {
+        for_each_bit(tile.near(area), [&](std::uint32_t number) {
+            const Label label = tile.label(number);
+            if (label == Label::Water || label == Label::Ignore) return;
+            if (const ElementBox box = tile.box(number); limits.meet(box))
+                found_.push_back({tile.order(number), std::uint32_t(tiles_.size()), number, box});
         });
+        if (!found_.empty() && found_.back().tile == tiles_.size()) tiles_.push_back(tile);
+    });
     std::sort(found_.begin(), found_.end(), [](const Found& l, const Found& r) { return l.order < r.order; });
 }
 

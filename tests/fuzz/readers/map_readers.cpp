@@ -68,7 +68,8 @@ std::string corrected(const fs::path& file, std::size_t levels)
 void use(const Geometry& geometry)
 {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    geometry.impl().visit_tiles(-infinity, -infinity, infinity, infinity, [](const Tile& tile, const ElementBox&) {
+    const Rect everywhere{-infinity, -infinity, infinity, infinity};
+    geometry.impl().visit_tiles(everywhere, [](const Tile& tile, const ElementBox&) {
         for (std::uint32_t element = 0; element < tile.elements(); ++element) {
             tile.bounds(element);
             tile.part(element);
