@@ -3,8 +3,6 @@
 #include "base/rect.h"
 #include "collision/tile_bins.h"
 
-#include <optional>
-
 namespace spawnfield {
 
 /// Finds the tiles of a geometry near one robot after the other. It keeps the tiles near the last robot, and those of a
