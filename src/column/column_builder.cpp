@@ -19,10 +19,12 @@ void add(const Interval& z, const SurfaceHit& hit, bool terrain, Column& out)
 
 }  // namespace
 
-void ColumnBuilder::build(std::span<const SurfaceHit> hits, Column& out)
+void ColumnBuilder::build(std::span<const SurfaceHit> hits, Column& out, std::span<const Span> sheets,
+                          std::span<const double> water_sheets)
 {
-    if (hits.empty()) return;
     const std::size_t first_span = out.spans.size(), first_water = out.water.size();
+    out.spans.insert(out.spans.end(), sheets.begin(), sheets.end());
+    out.water.insert(out.water.end(), water_sheets.begin(), water_sheets.end());
     for (std::size_t i = 0; i < hits.size();) {
         const SurfaceHit& hit = hits[i];
         if (hit.is_primitive || !hit.filled) {
@@ -77,13 +79,8 @@ void ColumnBuilder::finish(std::size_t first_span, std::size_t first_water, Colu
         std::sort(out.water.begin() + std::ptrdiff_t(first_water), out.water.end(), std::greater<>());
         out.water.erase(std::unique(out.water.begin() + std::ptrdiff_t(first_water), out.water.end()), out.water.end());
     }
-    const std::span<const Span> spans = std::span(out.spans).subspan(first_span);
-    if (spans.size() == 1) {
-        if (spans[0].terrain) out.layers.push_back(spans[0].top);
-        return;
-    }
     intervals_.clear();
-    for (const Span& span : spans)
+    for (const Span& span : std::span(out.spans).subspan(first_span))
         if (span.terrain) intervals_.push_back({{span.bottom, span.top}, true});
     join(intervals_, layer_tolerance);
     for (auto solid = intervals_.rbegin(); solid != intervals_.rend(); ++solid) out.layers.push_back(solid->z.top);

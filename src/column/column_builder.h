@@ -10,8 +10,10 @@ namespace spawnfield {
 /// Builds columns from the hits of their vertical lines. Reuses its temporary memory for the next column.
 class ColumnBuilder {
 public:
-    /// Appends one column to `out`. The hits must be in the order of their elements.
-    void build(std::span<const SurfaceHit> hits, Column& out);
+    /// Appends to `out` the column of these hits, which must be in the order of their elements, and of sheets that are
+    /// already known as spans and as heights of water surfaces.
+    void build(std::span<const SurfaceHit> hits, Column& out, std::span<const Span> sheets = {},
+               std::span<const double> water_sheets = {});
 
 private:
     struct Solid {

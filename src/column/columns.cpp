@@ -327,20 +327,19 @@ inline void Columns::refresh(Slot& slot)
 inline void Columns::add_sheet(Slot& slot, const SurfaceHit& hit, double z)
 {
     refresh(slot);
-    if (!slot.has_more && hit.water) {
+    if (hit.water) {
         if (slot.has_water && slot.water == z) return;
         if (!slot.has_water) {
             slot.has_water = true;
             slot.water = z;
             return;
         }
-    } else if (!slot.has_more) {
+    } else {
         const Span span{z, z, hit.part, hit.terrain, !hit.open};
         if (slot.has_span && slot.span == span) return;
         if (!slot.has_span) {
             slot.has_span = true;
             slot.span = span;
-            slot.index = hit.element;
             return;
         }
     }
@@ -349,37 +348,17 @@ inline void Columns::add_sheet(Slot& slot, const SurfaceHit& hit, double z)
     add(slot, listed);
 }
 
-/// Adds a hit to the list of a column. The list begins with what the slot has.
+/// Adds a hit to the list of a column.
 void Columns::add(Slot& slot, const SurfaceHit& hit)
 {
     refresh(slot);
-    if (!slot.has_more) {
-        SurfaceHit first{};
-        first.element = std::exchange(slot.index, none);
-        first.piece = none;  // its piece is not known, and not needed because it is not filled
-        first.part = slot.span.part;
-        first.open = !slot.span.sealed;
-        first.terrain = slot.span.terrain;
-        first.touches = true;
-        first.z = {slot.span.bottom, slot.span.top};
-        if (slot.has_span) list(slot, first);
-        first.element = none;  // not known; the order matters only within a filled piece
-        first.water = true;
-        first.z = {slot.water, slot.water};
-        if (slot.has_water) list(slot, first);
-        slot.has_more = true;
-        full_.push_back(std::uint32_t(&slot - slots_.data()));
-    }
-    list(slot, hit);
-}
-
-void Columns::list(Slot& slot, const SurfaceHit& hit)
-{
-    listed_.push_back({hit, slot.index});
+    if (!slot.has_more) full_.push_back(std::uint32_t(&slot - slots_.data()));
+    listed_.push_back({hit, slot.has_more ? slot.index : none});
+    slot.has_more = true;
     slot.index = std::uint32_t(listed_.size() - 1);
 }
 
-/// Appends the column of a list of hits to column_.
+/// Appends the column of a slot and its list of hits to column_.
 void Columns::complete(Slot& slot)
 {
     order_.clear();
@@ -388,7 +367,7 @@ void Columns::complete(Slot& slot)
     std::sort(order_.begin(), order_.end());
     hits_.clear();
     for (const std::uint64_t both : order_) hits_.push_back(listed_[std::uint32_t(both)].hit);
-    builder_.build(hits_, column_);
+    builder_.build(hits_, column_, {&slot.span, slot.has_span}, {&slot.water, slot.has_water});
     end_column(slot);
 }
 

@@ -130,8 +130,8 @@ private:
     struct Slot {
         Span span;
         double water = 0;  ///< m
-        /// The element of `span`. If the column has more: while scanning, its first hit in listed_, and then, its place
-        /// in starts_.
+        /// Only if the column has more. While scanning: the last of its other hits, in listed_. Then: its place in
+        /// starts_.
         std::uint32_t index = 0;
         bool has_span : 1 = false, has_water : 1 = false, has_more : 1 = false;
         /// The slot is empty if this is not Columns::round_. So a block need not empty all slots before it uses them,
@@ -141,7 +141,7 @@ private:
     struct Start {
         std::uint32_t span = 0, layer = 0, water = 0;
     };
-    /// A hit of a column that has more than a slot can hold.
+    /// A hit that its column's slot cannot hold.
     struct ListedHit {
         SurfaceHit hit;
         std::uint32_t next;  ///< index in listed_ of another hit of the column, or `none`
@@ -171,7 +171,6 @@ private:
     void refresh(Slot& slot);
     void add_sheet(Slot& slot, const SurfaceHit& hit, double z);
     void add(Slot& slot, const SurfaceHit& hit);
-    void list(Slot& slot, const SurfaceHit& hit);
     void complete_all();
     void complete(Slot& slot);
     void end_column(Slot& slot);
