@@ -6,8 +6,12 @@
 #include <spawnfield/poses.h>
 #include <spawnfield/raster_cells.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <charconv>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 namespace spawnfield {
@@ -35,23 +39,30 @@ std::string settled_raster_header(const std::optional<HeadingRule>& rule)
 /// Texts of numbers that repeat: x and y of a raster. Making a text takes much longer than finding it.
 class RepeatedNumbers {
 public:
-    /// The text is valid until the next call.
-    const std::string& text_of(double value)
+    /// Does the same as write_number().
+    char* write(char* to, double value)
     {
         const auto bits = std::bit_cast<std::uint64_t>(value);
         Known& known = known_[bits * 0x9e3779b97f4a7c15 >> (64 - index_bits)];  // multiplicative hashing (Knuth)
-        if (known.text.empty() || known.bits != bits) known = {bits, number(value)};
-        return known.text;
+        if (known.size == 0 || known.bits != bits) {
+            known.bits = bits;
+            known.size = std::size_t(write_number(known.text.data(), value) - known.text.data());
+        }
+        std::memcpy(to, known.text.data(), number_room);
+        return to + known.size;
     }
 
 private:
     static constexpr int index_bits = 12;
     struct Known {
         std::uint64_t bits = 0;
-        std::string text;  ///< empty: not made yet
+        std::size_t size = 0;  ///< of the text, characters; 0: not made yet
+        std::array<char, number_room> text{};
     };
-    std::vector<Known> known_{std::size_t{1} << index_bits};  // 160 kB
+    std::vector<Known> known_{std::size_t{1} << index_bits};  // 192 kB
 };
+
+char* write_text(char* to, std::string_view text) { return std::copy(text.begin(), text.end(), to); }
 
 /// Makes the lines of a raster's poses.
 class PoseLines {
@@ -72,19 +83,24 @@ public:
     void append(std::string& text, const RasterPose& pose, const RasterRest* rest) const
     {
         thread_local RepeatedNumbers numbers;
-        text += numbers.text_of(pose.x);
-        text += ',';
-        text += numbers.text_of(pose.y);
-        text += ',';
-        append_number(text, pose.z);
-        if (is_settled_) {
-            text += ',';
-            append_numbers(text, {rest->roll, rest->pitch});
-        }
-        ((text += ',') += rule_ && is_settled_ ? number(rest->yaw) : yaw_) += ',';
-        if (pose.layer >= 0) text += std::to_string(pose.layer);
-        text += ',';
-        text += to_string(pose.verdict);
+        std::array<char, 8 * number_room> line;  // at most six numbers, a layer and a verdict
+        char* end = numbers.write(line.data(), pose.x);
+        *end++ = ',';
+        end = numbers.write(end, pose.y);
+        *end++ = ',';
+        end = write_number(end, pose.z);
+        *end++ = ',';
+        if (is_settled_)
+            for (const double angle : {rest->roll, rest->pitch}) {
+                end = write_number(end, angle);
+                *end++ = ',';
+            }
+        end = rule_ && is_settled_ ? write_number(end, rest->yaw) : write_text(end, yaw_);
+        *end++ = ',';
+        if (pose.layer >= 0) end = std::to_chars(end, end + number_room, pose.layer).ptr;
+        *end++ = ',';
+        end = write_text(end, to_string(pose.verdict));
+        text.append(line.data(), end);
         if (is_settled_) append_rest(text, *rest, rule_);
     }
 
@@ -100,11 +116,9 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
                       int threads)
 {
     const PoseLines lines(raster);
-    std::vector<RasterPose> poses;
-    poses.reserve(std::min<std::size_t>(batch_lines, raster.counts.total()));
     std::vector<std::string> texts;
     std::size_t written = 0;  // poses
-    const auto write = [&] {
+    const auto write = [&](std::span<const RasterPose> poses) {
         write_lines(poses.size(), threads, sink, texts, [&](std::string& text, std::size_t first, std::size_t end) {
             for (std::size_t i = first; i < end; ++i) {
                 lines.append(text, poses[i], lines.is_settled() ? &raster.rests[written + i] : nullptr);
@@ -112,14 +126,21 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
             }
         });
         written += poses.size();
-        poses.clear();
     };
     if (raster.grid.first_row == 0) sink(lines.header() + "\n");
+    if (!aerial || raster.dims != 3) {
+        write(raster.poses);
+        return;
+    }
+    std::vector<RasterPose> batch;
+    batch.reserve(std::min<std::size_t>(batch_lines, raster.counts.total()));
     for_each_pose(raster, aerial, [&](const RasterPose& pose) {
-        poses.push_back(pose);
-        if (poses.size() == batch_lines) write();
+        batch.push_back(pose);
+        if (batch.size() < batch_lines) return;
+        write(batch);
+        batch.clear();
     });
-    write();
+    write(batch);
 }
 
 void write_raster_cells_csv(const RasterResult& raster, const std::vector<RasterCell>& cells,
