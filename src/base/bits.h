@@ -26,6 +26,14 @@ inline std::uint64_t bits_between(int first, int last)
 /// Sixteen bytes in one register. The type is an extension of GCC and clang.
 using SixteenBytes = std::uint8_t __attribute__((vector_size(16)));
 
+/// Reads sixteen bytes.
+inline SixteenBytes sixteen_at(const void* from)
+{
+    SixteenBytes out;
+    std::memcpy(&out, from, sizeof out);
+    return out;
+}
+
 /// Returns by how much each byte of `a` exceeds that of `b`; 0 where it does not.
 inline SixteenBytes excess(const SixteenBytes& a, const SixteenBytes& b)
 {

@@ -35,12 +35,14 @@ void TileBins::fill_bins()
     const double width = area_.max.x() - area_.min.x(), height = area_.max.y() - area_.min.y();
     constexpr double most = 64;      // bins along a side
     constexpr std::size_t few = 16;  // tiles; one bin for all of them takes less time
-    const bool is_divided = binned_.size() > few && width * height > 0 && std::isfinite(width * height);
-    bins_per_metre_ = is_divided ? std::min(std::sqrt(double(binned_.size()) / (width * height)),
-                                            most / std::max(width, height))
-                                 : 0;
-    cols_ = is_divided ? std::uint32_t(width * bins_per_metre_) + 1 : 1;
-    rows_ = is_divided ? std::uint32_t(height * bins_per_metre_) + 1 : 1;
+    bins_per_metre_ = 0;
+    cols_ = rows_ = 1;
+    if (binned_.size() > few && width * height > 0 && std::isfinite(width * height)) {
+        bins_per_metre_ = std::min(std::sqrt(double(binned_.size()) / (width * height)),
+                                   most / std::max(width, height));
+        cols_ = std::uint32_t(width * bins_per_metre_) + 1;
+        rows_ = std::uint32_t(height * bins_per_metre_) + 1;
+    }
     starts_.assign(std::size_t{cols_} * rows_ + 1, 0);
     const auto visit_bins = [&](const BinRange& bins, const auto& visit) {
         for (std::size_t row = bins.first_row; row <= bins.last_row; ++row)

@@ -250,18 +250,16 @@ bool has_consistent_triangles(const Tile& tile)
     if (tile.vertices.empty() || tile.pieces.empty()) return false;
     const auto last_vertex = std::uint8_t(tile.vertices.size() - 1), last_piece = std::uint8_t(tile.pieces.size() - 1);
     constexpr std::size_t width = sizeof(SixteenBytes);
-    const auto sixteen_at = [](const void* records, std::size_t byte) {
-        SixteenBytes out;
-        std::memcpy(&out, static_cast<const char*>(records) + byte, width);
-        return out;
-    };
     std::array<TileTriangle, width> largest;  // as many bytes as a whole number of SixteenBytes
     largest.fill({{last_vertex, last_vertex, last_vertex}, last_piece, Label::Water});
     std::array<TileTriangle, TileBoxes::most> triangles{};
     std::memcpy(triangles.data(), tile.triangles.data(), tile.triangles.size_bytes());
+    const auto at = [](const auto& records, std::size_t byte) {
+        return sixteen_at(reinterpret_cast<const char*>(records.data()) + byte);
+    };
     SixteenBytes over{};
     for (std::size_t byte = 0; byte < tile.triangles.size_bytes(); byte += width)
-        over |= excess(sixteen_at(triangles.data(), byte), sixteen_at(largest.data(), byte % sizeof largest));
+        over |= excess(at(triangles, byte), at(largest, byte % sizeof largest));
     return bits_of(SixteenBytes(over == 0)) == 0xffff;
 }
 

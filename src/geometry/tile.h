@@ -249,9 +249,8 @@ private:
         for (std::size_t e = 0; e < TileBoxes::most; e += sizeof(SixteenBytes)) {
             SixteenBytes gaps{};  // 0 where boxes meet
             for (std::size_t k = 0; k < Axes; ++k) {
-                SixteenBytes min, max;
-                std::memcpy(&min, boxes->min[First + k].data() + e, sizeof min);
-                std::memcpy(&max, boxes->max[First + k].data() + e, sizeof max);
+                const SixteenBytes min = sixteen_at(boxes->min[First + k].data() + e),
+                                   max = sixteen_at(boxes->max[First + k].data() + e);
                 gaps |= excess(min, to[k]) | excess(from[k], max);
             }
             out |= std::uint64_t{bits_of(SixteenBytes(gaps == 0))} << e;
