@@ -453,21 +453,22 @@ TEST_CASE("sample gives a notice if many poses are where the scene has ground tw
                      "  - {name: high, label: terrain, plane: " +
                          upper + "}\n");
         REQUIRE(run_program(folder, "bake scene.yaml -o map --resolution 0.5").status == 0);
-        const ProgramRun run = run_program(folder,
-                                           "sample map -n 200 --stance level --robot box:0.4,0.4,0.3" + options);
+        const ProgramRun run = run_program(folder, "sample map -n 200 --robot box:0.4,0.4,0.3 --stance " + options);
         CHECK(run.status == 0);
         return run.err;
     };
-    const std::string notice =
+    const std::string cause =
         " judged poses are on a layer with another layer at most 0.1 m above it (ground twice in one place); there a "
-        "robot collides, or is less than --offset above the ground; --layers top uses only the highest layer of each "
-        "place\n";
+        "robot collides";
+    const std::string remedy = "; --layers top uses only the highest layer of each place, which takes less time\n",
+                      notice = cause + ", or is less than --offset above the ground" + remedy;
     const std::string twice = "[10, 10], xyz: [0, 0, 0.06]";
-    CHECK_THAT(sample(twice, ""), Contains(notice) && Contains(" 200 valid; "));
-    CHECK_THAT(sample(twice, " --offset 0.02"), Contains(notice) && Contains(" collision; "));
-    CHECK_THAT(sample(twice, " --layers top"), !Contains("notice"));
-    CHECK_THAT(sample("[10, 10], xyz: [0, 0, 0.3]", ""), !Contains("notice"));  // a deck with a low space below it
-    CHECK_THAT(sample("[2, 2], xyz: [0, 0, 0.06]", ""), !Contains("notice"));   // few poses
+    CHECK_THAT(sample(twice, "level"), Contains(notice) && Contains(" 200 valid; "));
+    CHECK_THAT(sample(twice, "level --offset 0.02"), Contains(notice) && Contains(" collision; "));
+    CHECK_THAT(sample(twice, "settled"), Contains(cause + remedy) && Contains(" collision; "));
+    CHECK_THAT(sample(twice, "level --layers top"), !Contains("notice"));
+    CHECK_THAT(sample("[10, 10], xyz: [0, 0, 0.3]", "level"), !Contains("notice"));  // a deck with a low space below it
+    CHECK_THAT(sample("[2, 2], xyz: [0, 0, 0.06]", "level"), !Contains("notice"));   // few poses
 }
 
 TEST_CASE("an option that has no effect gets a notice, and changes nothing")

@@ -3,6 +3,7 @@
 #include <spawnfield/types.h>
 
 #include <dlfcn.h>
+#include <link.h>
 
 #include <stdexcept>
 #include <string>
@@ -12,8 +13,14 @@ namespace spawnfield {
 std::filesystem::path library_folder()
 {
     Dl_info here{};
-    const bool known = dladdr(reinterpret_cast<const void*>(&library_folder), &here) != 0;
-    return known ? std::filesystem::path(here.dli_fname).parent_path() : std::filesystem::path();
+    void* object = nullptr;  // a link_map
+    if (dladdr1(reinterpret_cast<const void*>(&library_folder), &here, &object, RTLD_DL_LINKMAP) == 0) return {};
+    // A program that contains the library has no name there, and `here` has what it was called, which may be found in
+    // PATH only.
+    const bool is_program = *static_cast<const link_map*>(object)->l_name == '\0';
+    const std::filesystem::path file = is_program ? std::filesystem::read_symlink("/proc/self/exe")
+                                                  : std::filesystem::path(here.dli_fname);
+    return file.parent_path();
 }
 
 const void* module_symbol(const char* name, const char* failure)

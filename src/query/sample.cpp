@@ -302,7 +302,7 @@ private:
         const std::optional<ChosenLayer> layer = layer_in(std::size_t(slot), column, at);
         if (!layer) return;
         out.on_ground = true;
-        out.on_double_ground = layer->is_double_ground && !is_settled_;
+        out.on_double_ground = layer->is_double_ground;
         const Vec3 ground(at.x(), at.y(), layer->height);
         if (places_.has_facing()) out.spawn.yaw = places_.facing_yaw(ground);
         if (is_settled_)

@@ -127,7 +127,8 @@ void notice_if_long(const QueryArgs& query, const ReachOptions& options, const S
     const double columns = size.x() * size.y() / (*options.step * *options.step);
     std::error_code unreadable;
     if (columns < many || std::filesystem::exists(kept_graph_file(*session.judge, options), unreadable)) return;
-    notice(query, "islands: about " + rounded(columns) + " places are examined, " + rounded(*options.step) +
+    notice(query, "islands: about " + rounded(columns / 1e6) + " million places are examined, " +
+                      rounded(*options.step) +
                       " m apart, which may take long; a larger --reach-step takes less time, but misses narrow "
                       "passages");
 }

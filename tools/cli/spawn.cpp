@@ -190,8 +190,9 @@ void notice_about_double_ground(const CommonArgs& args, const SpawnList& list)
     if (list.on_double_ground == 0 || double(list.on_double_ground) < noticeable * double(all)) return;
     notice(args, std::to_string(list.on_double_ground) + " of " + counted(all, "judged pose") +
                      " are on a layer with another layer at most " + number(double_ground) +
-                     " m above it (ground twice in one place); there a robot collides, or is less than --offset above "
-                     "the ground; --layers top uses only the highest layer of each place");
+                     " m above it (ground twice in one place); there a robot collides" +
+                     (list.stance == Stance::Settled ? "" : ", or is less than --offset above the ground") +
+                     "; --layers top uses only the highest layer of each place, which takes less time");
 }
 
 /// Runs `search` or `sample` with its options.
