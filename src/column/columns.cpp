@@ -4,7 +4,6 @@
 #include "column/column_builder.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace spawnfield {
 namespace {
