@@ -63,6 +63,7 @@ private:
 };
 
 char* write_text(char* to, std::string_view text) { return std::copy(text.begin(), text.end(), to); }
+char* write_comma(char* to) { return write_text(to, ","); }
 
 /// Makes the lines of a raster's poses.
 class PoseLines {
@@ -84,22 +85,14 @@ public:
     {
         thread_local RepeatedNumbers numbers;
         std::array<char, 8 * number_room> line;  // at most six numbers, a layer and a verdict
-        char* end = numbers.write(line.data(), pose.x);
-        *end++ = ',';
-        end = numbers.write(end, pose.y);
-        *end++ = ',';
-        end = write_number(end, pose.z);
-        *end++ = ',';
+        char* end = write_comma(numbers.write(line.data(), pose.x));
+        end = write_comma(numbers.write(end, pose.y));
+        end = write_comma(write_number(end, pose.z));
         if (is_settled_)
-            for (const double angle : {rest->roll, rest->pitch}) {
-                end = write_number(end, angle);
-                *end++ = ',';
-            }
-        end = rule_ && is_settled_ ? write_number(end, rest->yaw) : write_text(end, yaw_);
-        *end++ = ',';
+            for (const double angle : {rest->roll, rest->pitch}) end = write_comma(write_number(end, angle));
+        end = write_comma(rule_ && is_settled_ ? write_number(end, rest->yaw) : write_text(end, yaw_));
         if (pose.layer >= 0) end = std::to_chars(end, end + number_room, pose.layer).ptr;
-        *end++ = ',';
-        end = write_text(end, to_string(pose.verdict));
+        end = write_text(write_comma(end), to_string(pose.verdict));
         text.append(line.data(), end);
         if (is_settled_) append_rest(text, *rest, rule_);
     }
