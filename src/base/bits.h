@@ -17,6 +17,13 @@ void for_each_bit(std::uint64_t bits, const Visit& visit)
     for (; bits != 0; bits &= bits - 1) visit(std::uint32_t(std::countr_zero(bits)));
 }
 
+/// Returns the number of the first bit that is set; 63 if none is. Other than std::countr_zero, it has no branch.
+inline std::uint32_t first_bit(std::uint64_t bits)
+{
+    constexpr std::uint64_t last = std::uint64_t{1} << 63;
+    return std::uint32_t(std::countr_zero(bits | last));
+}
+
 /// Returns a number whose bits first .. last are set; none if last < first. Both are 0 .. 63.
 inline std::uint64_t bits_between(int first, int last)
 {

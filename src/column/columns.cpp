@@ -222,7 +222,7 @@ void Columns::add_triangle(const SeenTriangle& seen, const ColumnRange& range)
         for (int j = range.first_row; j <= range.last_row; ++j, slots += cols_) {
             const double y = y_[std::size_t(j)];
             const auto [inside, rim] = sides.of(lines, y);  // no branch depends on a single line
-            for_each_bit(inside & asked, [&](std::uint32_t k) { add_inside(slots[k], plane, x[k], y); });
+            for_each_bit(inside & asked, [&](std::uint32_t k) { add_inside(slots[k], seen, plane, x[k], y); });
             for_each_bit(rim & asked, [&](std::uint32_t k) { add_rim(slots[k], seen, plane, x[k], y); });
         }
     }
@@ -233,19 +233,21 @@ void Columns::add_columns(const Tile& tile, const ElementBox& box, Surfaces surf
 {
     static_assert(TileBoxes::most == Lines::most);
     const std::uint64_t elements = counted(tile, tile.alive, surfaces);
-    std::array<std::uint64_t, Lines::most> near_x;
-    for (int i = range.first_col; i <= range.last_col; ++i)
-        near_x[std::size_t(i - range.first_col)] = tile.near_x(x_[std::size_t(i)]) & elements;
-    std::uint32_t line = 0;
-    for (int j = range.first_row; j <= range.last_row; ++j) {
-        const double y = y_[std::size_t(j)];
-        const std::uint64_t near_y = tile.near_y(y);
-        if (near_y == 0) continue;
-        for (int i = range.first_col; i <= range.last_col; ++i, ++line) {
-            lines_.at[line] = {x_[std::size_t(i)], y};
-            lines_.slot[line] = std::uint32_t(number(i, j));
-            pair(tile, line, near_x[std::size_t(i - range.first_col)] & near_y);
-        }
+    const int cols = range.last_col + 1 - range.first_col, rows = range.last_row + 1 - range.first_row;
+    std::array<std::uint64_t, Lines::most> near_x, near_y;
+    for (int i = 0; i < cols; ++i)
+        near_x[std::size_t(i)] = tile.near_x(x_[std::size_t(range.first_col + i)]) & elements;
+    for (int j = 0; j < rows; ++j) near_y[std::size_t(j)] = tile.near_y(y_[std::size_t(range.first_row + j)]);
+    // One loop in place of two, without a branch: the ends of many short rows cannot be foretold.
+    int i = 0, j = 0;
+    for (std::uint32_t line = 0; line < std::uint32_t(cols * rows); ++line) {
+        const int col = range.first_col + i, row = range.first_row + j;
+        lines_.at[line] = {x_[std::size_t(col)], y_[std::size_t(row)]};
+        lines_.slot[line] = std::uint32_t(number(col, row));
+        pair(tile, line, near_x[std::size_t(i)] & near_y[std::size_t(j)]);
+        const int goes_on = i + 1 < cols;
+        i = (i + 1) & -goes_on;
+        j += 1 - goes_on;
     }
     add_pairs(tile, box);
 }
@@ -253,11 +255,18 @@ void Columns::add_columns(const Tile& tile, const ElementBox& box, Surfaces surf
 /// Remembers the triangles of a tile that may meet a line, and adds the hits of the line with primitives.
 inline void Columns::pair(const Tile& tile, std::uint32_t line, std::uint64_t elements)
 {
-    for_each_bit(elements, [&](std::uint32_t element) {
-        if (tile.is_triangle(element))
-            pairs_.push_back({std::uint8_t(line), std::uint8_t(element)});
-        else if (const auto hit = hit_of(tile, element, lines_.at[line].x(), lines_.at[line].y()))
-            add(slots_[lines_.slot[line]], *hit);
+    constexpr int usual = 4;  // most lines have at most so many pairs, so the loop below ends where it is expected
+    const std::uint64_t are_triangles = tile.are_triangles();
+    std::uint64_t triangles = elements & are_triangles;
+    const auto add_next = [&] {
+        pairs_.add({std::uint8_t(line), std::uint8_t(first_bit(triangles))}, triangles != 0);
+        triangles &= triangles - 1;
+    };
+    for (int k = 0; k < usual; ++k) add_next();
+    while (triangles != 0) add_next();
+    for_each_bit(elements & ~are_triangles, [&](std::uint32_t element) {
+        if (const auto hit = hit_of(tile, element, lines_.at[line].x(), lines_.at[line].y()))
+            listed(slots_[lines_.slot[line]]) = *hit;
     });
 }
 
@@ -265,45 +274,58 @@ inline void Columns::pair(const Tile& tile, std::uint32_t line, std::uint64_t el
 void Columns::add_pairs(const Tile& tile, const ElementBox& box)
 {
     constexpr std::size_t width = FourPairs::width;
+    if (pairs_.count == 0) return;
     constexpr double more = 0.01;  // m
     const auto side = [&](std::size_t axis) { return double(box.max[axis]) - double(box.min[axis]) + more; };
     const float rim = FourPairs::rim_in(side(0), side(1));
-    const std::size_t count = pairs_.size();
-    for (std::size_t first = 0; first < count; first += width) {
+    // The last four is filled up with its last pair.
+    for (std::size_t k = 0; k < width; ++k) pairs_.at[pairs_.count + k] = pairs_.at[pairs_.count - 1];
+    for (std::size_t first = 0; first < pairs_.count; first += width) {
         FourPairs four;
         for (std::size_t k = 0; k < width; ++k) {
-            const Pair& pair = pairs_[std::min(first + k, count - 1)];
+            const Pair& pair = pairs_.at[first + k];
             four.lines[k] = lines_.at[pair.line].data();
             four.corners[k] = tile.corner_pointers(pair.triangle);
         }
+        const std::uint32_t asked = (1U << std::min(pairs_.count - first, width)) - 1;
         const SeenTriangle::Sides sides = four.sides(rim);
-        const std::uint32_t asked = count - first < width ? (1U << (count - first)) - 1 : 15;
-        for_each_bit((sides.inside | sides.rim) & asked, [&](std::uint32_t k) {
-            const Pair& pair = pairs_[first + k];
-            const Vec2& line = lines_.at[pair.line];
-            Slot& slot = slots_[lines_.slot[pair.line]];
-            const SeenTriangle seen(tile, pair.triangle);
-            if ((sides.inside >> k & 1) != 0)
-                add_inside(slot, TrianglePlane(seen), line.x(), line.y());
-            else
-                add_rim(slot, seen, TrianglePlane(seen), line.x(), line.y());
-        });
+        const std::uint32_t inside = sides.inside & asked, at_rim = sides.rim & asked;
+        for (std::size_t k = 0; k < width; ++k) {
+            inside_.add(pairs_.at[first + k], (inside >> k & 1) != 0);
+            rim_.add(pairs_.at[first + k], (at_rim >> k & 1) != 0);
+        }
     }
-    pairs_.clear();
+    const auto take = [&](PairList& list, const auto& add) {
+        for (std::size_t i = 0; i < list.count; ++i) {
+            const Pair& pair = list.at[i];
+            const Vec2& line = lines_.at[pair.line];
+            const SeenTriangle seen(tile, pair.triangle);
+            add(slots_[lines_.slot[pair.line]], seen, TrianglePlane(seen), line.x(), line.y());
+        }
+        list.count = 0;
+    };
+    take(inside_, [&](auto&&... hit) { add_inside(hit...); });
+    take(rim_, [&](auto&&... hit) { add_rim(hit...); });
+    pairs_.count = 0;
 }
 
-inline void Columns::add_inside(Slot& slot, const TrianglePlane& plane, double x, double y)
+inline void Columns::add_inside(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y)
 {
-    if (plane.hit.filled)
-        add(slot, plane.hit_inside(x, y));
+    const double height = plane.height(x, y);
+    if (seen.is_filled())
+        listed(slot) = seen.hit_inside(plane, height);
     else
-        add_sheet(slot, plane.hit, plane.height(x, y));
+        add_sheet(slot, seen, plane, height);
 }
 
 inline void Columns::add_rim(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y)
 {
-    if (const auto hit = seen.hit_at_rim(plane, x, y))
-        hit->filled ? add(slot, *hit) : add_sheet(slot, *hit, hit->z.top);
+    const auto hit = seen.hit_at_rim(plane, x, y);
+    if (!hit) return;
+    if (hit->filled)
+        listed(slot) = *hit;
+    else
+        add_sheet(slot, seen, plane, hit->z.top);
 }
 
 void Columns::add_primitive(const Tile& tile, std::uint32_t element, const ColumnRange& range)
@@ -311,7 +333,7 @@ void Columns::add_primitive(const Tile& tile, std::uint32_t element, const Colum
     for (int j = range.first_row; j <= range.last_row; ++j)
         for (int i = range.first_col; i <= range.last_col; ++i)
             if (const auto hit = hit_of(tile, element, x_[std::size_t(i)], y_[std::size_t(j)]))
-                add(slots_[number(i, j)], *hit);
+                listed(slots_[number(i, j)]) = *hit;
 }
 
 /// Empties a slot that was last used for another block.
@@ -323,10 +345,10 @@ inline void Columns::refresh(Slot& slot)
 }
 
 /// Adds the hit of a sheet at height z, unless the slot has the same hit already: triangles share corners and edges.
-inline void Columns::add_sheet(Slot& slot, const SurfaceHit& hit, double z)
+inline void Columns::add_sheet(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double z)
 {
     refresh(slot);
-    if (hit.water) {
+    if (seen.is_water()) {
         if (slot.has_water && slot.water == z) return;
         if (!slot.has_water) {
             slot.has_water = true;
@@ -334,7 +356,8 @@ inline void Columns::add_sheet(Slot& slot, const SurfaceHit& hit, double z)
             return;
         }
     } else {
-        const Span span{z, z, hit.part, hit.terrain, !hit.open};
+        const TilePiece& piece = seen.piece();
+        const Span span{z, z, piece.part, seen.is_terrain(plane), piece.open == 0};
         if (slot.has_span && slot.span == span) return;
         if (!slot.has_span) {
             slot.has_span = true;
@@ -342,19 +365,20 @@ inline void Columns::add_sheet(Slot& slot, const SurfaceHit& hit, double z)
             return;
         }
     }
-    SurfaceHit listed = hit;
-    listed.z = {z, z};
-    add(slot, listed);
+    listed(slot) = seen.hit_inside(plane, z);
 }
 
-/// Adds a hit to the list of a column.
-void Columns::add(Slot& slot, const SurfaceHit& hit)
+/// Adds a hit to the list of a column, and returns it, to be set. So it need not be copied, which would wait for all of
+/// its parts.
+SurfaceHit& Columns::listed(Slot& slot)
 {
     refresh(slot);
     if (!slot.has_more) full_.push_back(std::uint32_t(&slot - slots_.data()));
-    listed_.push_back({hit, slot.has_more ? slot.index : none});
+    ListedHit& out = listed_.emplace_back();
+    out.next = slot.has_more ? slot.index : none;
     slot.has_more = true;
     slot.index = std::uint32_t(listed_.size() - 1);
+    return out.hit;
 }
 
 /// Appends the column of a slot and its list of hits to column_.

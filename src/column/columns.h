@@ -157,6 +157,18 @@ private:
     struct Pair {
         std::uint8_t line, triangle;
     };
+    /// Pairs of one tile.
+    struct PairList {
+        std::array<Pair, Lines::most * TileBoxes::most + FourPairs::width> at;  ///< with room to fill up the last four
+        std::size_t count = 0;
+
+        /// Adds a pair if it counts. There is no branch, because that cannot be foretold.
+        void add(const Pair& pair, bool counts)
+        {
+            at[count] = pair;
+            count += counts;
+        }
+    };
 
     void start(int cols, int rows);
     void look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
@@ -165,12 +177,12 @@ private:
     void add_columns(const Tile& tile, const ElementBox& box, Surfaces surfaces, const ColumnRange& range);
     void pair(const Tile& tile, std::uint32_t line, std::uint64_t elements);
     void add_pairs(const Tile& tile, const ElementBox& box);
-    void add_inside(Slot& slot, const TrianglePlane& plane, double x, double y);
+    void add_inside(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y);
     void add_rim(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y);
     void add_primitive(const Tile& tile, std::uint32_t element, const ColumnRange& range);
     void refresh(Slot& slot);
-    void add_sheet(Slot& slot, const SurfaceHit& hit, double z);
-    void add(Slot& slot, const SurfaceHit& hit);
+    void add_sheet(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double z);
+    SurfaceHit& listed(Slot& slot);
     void complete_all();
     void complete(Slot& slot);
     void end_column(Slot& slot);
@@ -182,7 +194,7 @@ private:
     bool are_dense_ = false;
     std::vector<double> x_, y_;  ///< of the block's columns, m, and x of a few more for TriangleSides; while scanning
     Lines lines_;
-    std::vector<Pair> pairs_;
+    PairList pairs_, inside_, rim_;  ///< those to look at, and those of them that meet, or may meet
     std::vector<Slot> slots_;
     Column column_;
     std::vector<Start> starts_;

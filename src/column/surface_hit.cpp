@@ -68,35 +68,22 @@ bool is_touched(const std::array<Vec3, 3>& corners, double sign, double x, doubl
 
 }  // namespace
 
-TrianglePlane::TrianglePlane(const SeenTriangle& triangle)
+SurfaceHit SeenTriangle::hit_inside(const TrianglePlane& plane, double height) const
 {
-    const Vec3 &a = triangle.a_, &b = triangle.b_, &c = triangle.c_, ab = b - a, ac = c - a;
-    const Interval heights{std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()})};
-    twice_area = ab.x() * ac.y() - ab.y() * ac.x();
-    x = a.x();
-    y = a.y();
-    z = a.z();
-    const bool is_vertical = twice_area == 0;
-    slope_x = is_vertical ? 0 : (ab.z() * ac.y() - ac.z() * ab.y()) / twice_area;
-    slope_y = is_vertical ? 0 : (ac.z() * ab.x() - ab.z() * ac.x()) / twice_area;
-    low = is_vertical ? heights.top : heights.bottom;  // a vertical one has no single height at a point: its top counts
-    high = heights.top;
-    const TileTriangle& from = triangle.tile_.triangles[triangle.triangle_];
-    const TilePiece& piece = triangle.tile_.piece(triangle.triangle_);
-    const bool filled = piece.solid != 0, looks_up = twice_area > 0;
-    hit = {.element = triangle.tile_.ids[triangle.triangle_],
-           .piece = piece.piece,
-           .part = piece.part,
-           .is_primitive = false,
-           .filled = filled,
-           .open = piece.open != 0,
-           .terrain = from.label == Label::Terrain && (piece.sides_up == 0 || filled || looks_up),
-           .water = from.label == Label::Water,
-           .crosses = filled,
-           .touches = !filled,
-           .z = {},
-           .crossing = 0,
-           .piece_bottom = piece.bottom};
+    const TilePiece& from = piece();
+    return {.element = tile_.ids[triangle_],
+            .piece = from.piece,
+            .part = from.part,
+            .is_primitive = false,
+            .filled = is_filled(),
+            .open = from.open != 0,
+            .terrain = is_terrain(plane),
+            .water = is_water(),
+            .crosses = is_filled(),
+            .touches = !is_filled(),
+            .z = {height, height},
+            .crossing = height,
+            .piece_bottom = from.bottom};
 }
 
 /// At a corner, this is exactly the corner's height, so that all triangles at that corner agree.
@@ -113,7 +100,7 @@ std::optional<SurfaceHit> SeenTriangle::hit_at_rim(const TrianglePlane& plane, d
     if (!((low_corner() <= Place(x + reach, y + reach)) && (high_corner() >= Place(x - reach, y - reach))).all())
         return std::nullopt;
     const std::array<Vec3, 3> corners = this->corners();
-    SurfaceHit out = plane.hit;
+    SurfaceHit out = hit_inside(plane, 0);
     out.crosses = out.filled && is_crossed(corners, x, y);
     if (out.crosses) out.crossing = height_at_rim(plane, x, y);
     const auto squared_length = [](const Vec3& p, const Vec3& q) { return (q - p).head<2>().squaredNorm(); };
@@ -137,8 +124,9 @@ std::optional<SurfaceHit> SeenTriangle::hit_at_rim(const TrianglePlane& plane, d
 std::optional<SurfaceHit> SeenTriangle::hit(double x, double y) const
 {
     const auto [inside, rim] = sides_of(x, y);
-    if (inside != 0) return TrianglePlane(*this).hit_inside(x, y);
-    return rim != 0 ? hit_at_rim(TrianglePlane(*this), x, y) : std::nullopt;
+    if (!(inside | rim)) return std::nullopt;
+    const TrianglePlane plane(*this);
+    return inside != 0 ? hit_inside(plane, plane.height(x, y)) : hit_at_rim(plane, x, y);
 }
 
 std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double x, double y)

@@ -28,27 +28,19 @@ struct SurfaceHit {
 
 class SeenTriangle;
 
-/// What all hits of a triangle have in common.
+/// The plane of a triangle.
 struct TrianglePlane {
     double twice_area;  ///< seen from above, m2; > 0 if the triangle faces upwards
     double x, y, z;     ///< of the first corner, m
     double slope_x, slope_y;
     double low, high;  ///< limits of the heights, m
-    SurfaceHit hit;    ///< of a line inside the triangle, without its heights
 
-    explicit TrianglePlane(const SeenTriangle& triangle);
+    [[gnu::always_inline]] explicit TrianglePlane(const SeenTriangle& triangle);
 
     /// Returns the height of the triangle at a line that is inside, m.
     double height(double at_x, double at_y) const
     {
         return std::min(std::max(z + slope_x * (at_x - x) + slope_y * (at_y - y), low), high);
-    }
-    /// Returns the hit of a line that is inside.
-    SurfaceHit hit_inside(double at_x, double at_y) const
-    {
-        SurfaceHit out = hit;
-        out.crossing = out.z.bottom = out.z.top = height(at_x, at_y);
-        return out;
     }
 };
 
@@ -90,8 +82,18 @@ public:
         return {inside, !(inside | outside)};
     }
 
-    /// Returns the hit of a line at the rim, if it meets the triangle, whose plane is given. A vertical triangle of a
-    /// sheet is never met.
+    bool is_filled() const { return piece().solid != 0; }
+    bool is_water() const { return label() == Label::Water; }
+    /// `plane` must be that of the triangle.
+    bool is_terrain(const TrianglePlane& plane) const
+    {
+        return label() == Label::Terrain && (piece().sides_up == 0 || is_filled() || plane.twice_area > 0);
+    }
+    const TilePiece& piece() const { return tile_.piece(triangle_); }
+
+    /// Returns the hit of a line inside the triangle, which it meets at this height, m.
+    SurfaceHit hit_inside(const TrianglePlane& plane, double height) const;
+    /// Returns the hit of a line at the rim, if it meets the triangle. A vertical triangle of a sheet is never met.
     std::optional<SurfaceHit> hit_at_rim(const TrianglePlane& plane, double x, double y) const;
 
     /// Returns the hit of the vertical line through (x, y), if it meets the triangle.
@@ -101,6 +103,7 @@ private:
     friend TrianglePlane;
     friend class TriangleSides;
 
+    Label label() const { return tile_.triangles[triangle_].label; }
     const Vec3& corner(std::size_t k) const { return tile_.vertices[tile_.triangles[triangle_].corners[k]]; }
     double height_at_rim(const TrianglePlane& plane, double x, double y) const;
 
@@ -112,6 +115,21 @@ private:
     const std::uint32_t triangle_;
     const Vec3 &a_, &b_, &c_;
 };
+
+inline TrianglePlane::TrianglePlane(const SeenTriangle& triangle)
+{
+    const Vec3 &a = triangle.a_, &b = triangle.b_, &c = triangle.c_, ab = b - a, ac = c - a;
+    const Interval heights{std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()})};
+    twice_area = ab.x() * ac.y() - ab.y() * ac.x();
+    x = a.x();
+    y = a.y();
+    z = a.z();
+    const bool is_vertical = twice_area == 0;
+    slope_x = is_vertical ? 0 : (ab.z() * ac.y() - ac.z() * ab.y()) / twice_area;
+    slope_y = is_vertical ? 0 : (ac.z() * ab.x() - ab.z() * ac.x()) / twice_area;
+    low = is_vertical ? heights.top : heights.bottom;  // a vertical one has no single height at a point: its top counts
+    high = heights.top;
+}
 
 /// Does the same as SeenTriangle::sides_of() for many lines: four at a time, in single floats, for which clear lines
 /// are farther from an edge. If the triangle faces downwards, the signs of all cross products are turned round.

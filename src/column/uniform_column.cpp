@@ -37,7 +37,8 @@ std::optional<SurfaceHit> uniform_hit(const Tile& tile, std::uint32_t triangle, 
     for (const double y : {rect.low_y, rect.high_y})
         for (const double x : {rect.low_x, rect.high_x})
             if (seen.sides_of(x, y).inside == 0) return std::nullopt;
-    return TrianglePlane(seen).hit_inside(rect.high_x, rect.high_y);
+    const TrianglePlane plane(seen);
+    return seen.hit_inside(plane, plane.height(rect.high_x, rect.high_y));
 }
 
 }  // namespace

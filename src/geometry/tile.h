@@ -144,6 +144,8 @@ struct Tile {
 
     std::uint32_t elements() const { return std::uint32_t(head->triangles) + head->primitives; }
     bool is_triangle(std::uint32_t element) const { return element < head->triangles; }
+    /// Returns a bit for each element that is a triangle.
+    std::uint64_t are_triangles() const { return bits_between(0, int(head->triangles) - 1); }
     std::array<Vec3, 3> corners(std::uint32_t triangle) const
     {
         const auto [a, b, c] = corner_pointers(triangle);
