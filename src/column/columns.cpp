@@ -312,7 +312,7 @@ void Columns::add_pairs(const Tile& tile, const ElementBox& box)
 inline void Columns::add_inside(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y)
 {
     const double height = plane.height(x, y);
-    if (seen.is_filled())
+    if (plane.filled)
         listed(slot) = seen.hit_inside(plane, height);
     else
         add_sheet(slot, seen, plane, height);
@@ -348,7 +348,7 @@ inline void Columns::refresh(Slot& slot)
 inline void Columns::add_sheet(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double z)
 {
     refresh(slot);
-    if (seen.is_water()) {
+    if (plane.water) {
         if (slot.has_water && slot.water == z) return;
         if (!slot.has_water) {
             slot.has_water = true;
@@ -356,8 +356,7 @@ inline void Columns::add_sheet(Slot& slot, const SeenTriangle& seen, const Trian
             return;
         }
     } else {
-        const TilePiece& piece = seen.piece();
-        const Span span{z, z, piece.part, seen.is_terrain(plane), piece.open == 0};
+        const Span span{z, z, plane.part, plane.terrain, !plane.open};
         if (slot.has_span && slot.span == span) return;
         if (!slot.has_span) {
             slot.has_span = true;

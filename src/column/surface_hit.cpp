@@ -70,20 +70,19 @@ bool is_touched(const std::array<Vec3, 3>& corners, double sign, double x, doubl
 
 SurfaceHit SeenTriangle::hit_inside(const TrianglePlane& plane, double height) const
 {
-    const TilePiece& from = piece();
     return {.element = tile_.ids[triangle_],
-            .piece = from.piece,
-            .part = from.part,
+            .piece = piece().piece,
+            .part = plane.part,
             .is_primitive = false,
-            .filled = is_filled(),
-            .open = from.open != 0,
-            .terrain = is_terrain(plane),
-            .water = is_water(),
-            .crosses = is_filled(),
-            .touches = !is_filled(),
+            .filled = plane.filled,
+            .open = plane.open,
+            .terrain = plane.terrain,
+            .water = plane.water,
+            .crosses = plane.filled,
+            .touches = !plane.filled,
             .z = {height, height},
             .crossing = height,
-            .piece_bottom = from.bottom};
+            .piece_bottom = piece().bottom};
 }
 
 /// At a corner, this is exactly the corner's height, so that all triangles at that corner agree.

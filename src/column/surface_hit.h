@@ -28,12 +28,14 @@ struct SurfaceHit {
 
 class SeenTriangle;
 
-/// The plane of a triangle.
+/// What all hits of a triangle have in common.
 struct TrianglePlane {
     double twice_area;  ///< seen from above, m2; > 0 if the triangle faces upwards
     double x, y, z;     ///< of the first corner, m
     double slope_x, slope_y;
     double low, high;  ///< limits of the heights, m
+    std::uint32_t part;
+    bool filled, open, terrain, water;  ///< as in SurfaceHit
 
     [[gnu::always_inline]] explicit TrianglePlane(const SeenTriangle& triangle);
 
@@ -82,15 +84,6 @@ public:
         return {inside, !(inside | outside)};
     }
 
-    bool is_filled() const { return piece().solid != 0; }
-    bool is_water() const { return label() == Label::Water; }
-    /// `plane` must be that of the triangle.
-    bool is_terrain(const TrianglePlane& plane) const
-    {
-        return label() == Label::Terrain && (piece().sides_up == 0 || is_filled() || plane.twice_area > 0);
-    }
-    const TilePiece& piece() const { return tile_.piece(triangle_); }
-
     /// Returns the hit of a line inside the triangle, which it meets at this height, m.
     SurfaceHit hit_inside(const TrianglePlane& plane, double height) const;
     /// Returns the hit of a line at the rim, if it meets the triangle. A vertical triangle of a sheet is never met.
@@ -103,7 +96,7 @@ private:
     friend TrianglePlane;
     friend class TriangleSides;
 
-    Label label() const { return tile_.triangles[triangle_].label; }
+    const TilePiece& piece() const { return tile_.piece(triangle_); }
     const Vec3& corner(std::size_t k) const { return tile_.vertices[tile_.triangles[triangle_].corners[k]]; }
     double height_at_rim(const TrianglePlane& plane, double x, double y) const;
 
@@ -129,6 +122,13 @@ inline TrianglePlane::TrianglePlane(const SeenTriangle& triangle)
     slope_y = is_vertical ? 0 : (ac.z() * ab.x() - ab.z() * ac.x()) / twice_area;
     low = is_vertical ? heights.top : heights.bottom;  // a vertical one has no single height at a point: its top counts
     high = heights.top;
+    const Label label = triangle.tile_.triangles[triangle.triangle_].label;
+    const TilePiece& piece = triangle.piece();
+    part = piece.part;
+    filled = piece.solid != 0;
+    open = piece.open != 0;
+    terrain = label == Label::Terrain && (piece.sides_up == 0 || filled || twice_area > 0);
+    water = label == Label::Water;
 }
 
 /// Does the same as SeenTriangle::sides_of() for many lines: four at a time, in single floats, for which clear lines
