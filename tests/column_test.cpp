@@ -181,6 +181,16 @@ TEST_CASE("the columns of a block are those that are computed one by one")
     CHECK(column(scene, 0.2, 0.3).water == Heights{1.5});
 }
 
+TEST_CASE("columns that all meet the box of each triangle of a full tile are those that are computed one by one")
+{
+    Scene scene;  // 64 triangles, which fill a tile
+    for (int k = 0; k < 32; ++k)
+        hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(4, 4), {{0, 0, 0.5 * k}, Mat3::Identity()}));
+    CHECK(column(scene, 0.3, 0.2).layers.size() == 32);
+    for (const int cols : {7, 8, 9}) CHECK(different_columns(scene, cols) == 0);
+    CHECK(different_columns_at_places(scene, 1) == 0);
+}
+
 TEST_CASE("blocks in the same memory are those in fresh memory, also after 65,536 of them")
 {
     const Geometry geometry(hard_case(3).scene);
