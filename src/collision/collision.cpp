@@ -165,7 +165,7 @@ struct CollisionChecker::Impl {
         const auto is_wanted = [&](Label label, std::uint32_t part) {
             return label != Label::Water && (any_will_do || part < best);
         };
-        const std::uint64_t are_triangles = bits_between(0, int(tile.triangles.size()) - 1);
+        const std::uint64_t are_triangles = tile.are_triangles();
         for (std::uint64_t triangles = elements & are_triangles; triangles != 0 && !is_done();) {
             FewTriangles few;
             for (; triangles != 0 && few.count < FourTriangles::width; triangles &= triangles - 1) {
