@@ -4,6 +4,7 @@
 #include "query/draw.h"
 #include "test_map.h"
 #include "worlds/hand_scene.h"
+#include "worlds/random.h"
 
 #include <numbers>
 
@@ -269,6 +270,47 @@ TEST_CASE("intervals of stacked and sunken terrain are joined")
     CHECK(ground(scene, {0, 0, 1.2})->height == 1);         // the ground belongs to a single piece
     CHECK_FALSE(ground(scene, {-1.6, -1.6, 2.5})->terrain);
     CHECK_FALSE(ground(scene, {1.5, 1.5, 0.2}));  // inside the hill there is no ground
+}
+
+TEST_CASE("the layers of random stacks of boxes are the upper ends of terrain that is joined pair by pair")
+{
+    Random random(3);
+    constexpr std::array gaps{0.0, 0.4 * layer_tolerance, 3 * layer_tolerance};
+    std::size_t joined = 0;
+    for (int round = 0; round < 500; ++round) {
+        CAPTURE(round);
+        Scene scene;
+        for (int box = random.below(6); box >= 0; --box) {
+            const double bottom = random.below(9), height = 1 + random.below(4) - gaps[std::size_t(random.below(3))];
+            hand::add_shape(scene, random.chance(0.25) ? Label::Obstacle : Label::Terrain,
+                            box_at({1, 1, height}, {0, 0, bottom + height / 2}));
+        }
+        const Column found = column(scene, 0, 0);
+        std::vector<Span> terrain = found.spans;
+        std::erase_if(terrain, [](const Span& span) { return !span.terrain; });
+        const std::size_t before = terrain.size();
+        for (std::size_t i = 0; i < terrain.size();) {
+            const auto is_near = [&](const Span& span) {
+                return &span != &terrain[i] && span.bottom <= terrain[i].top + layer_tolerance &&
+                       terrain[i].bottom <= span.top + layer_tolerance;
+            };
+            const auto other = std::ranges::find_if(terrain, is_near);
+            if (other == terrain.end()) {
+                ++i;
+                continue;
+            }
+            terrain[i].bottom = std::min(terrain[i].bottom, other->bottom);
+            terrain[i].top = std::max(terrain[i].top, other->top);
+            terrain.erase(other);
+            i = 0;
+        }
+        joined += before - terrain.size();
+        Heights layers;
+        for (const Span& span : terrain) layers.push_back(span.top);
+        std::ranges::sort(layers, std::greater<>());
+        CHECK(found.layers == layers);
+    }
+    CHECK(joined > 500);
 }
 
 TEST_CASE("terrain wins over an obstacle at the same height")

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 namespace spawnfield {
@@ -57,7 +58,7 @@ void ColumnBuilder::add_piece(std::span<const SurfaceHit> hits, Column& out)
         if (hit.touches) intervals_.push_back({hit.z, hit.terrain});
     }
     pair_crossings(crossings_, hits.front().piece_bottom, intervals_);
-    join(intervals_, touch_tolerance);
+    join(intervals_);
     for (const Solid& solid : intervals_) add(solid.z, hits.front(), solid.terrain, out);
 }
 
@@ -79,11 +80,17 @@ void ColumnBuilder::finish(std::size_t first_span, std::size_t first_water, Colu
         std::sort(out.water.begin() + std::ptrdiff_t(first_water), out.water.end(), std::greater<>());
         out.water.erase(std::unique(out.water.begin() + std::ptrdiff_t(first_water), out.water.end()), out.water.end());
     }
-    intervals_.clear();
-    for (const Span& span : std::span(out.spans).subspan(first_span))
-        if (span.terrain) intervals_.push_back({{span.bottom, span.top}, true});
-    join(intervals_, layer_tolerance);
-    for (auto solid = intervals_.rbegin(); solid != intervals_.rend(); ++solid) out.layers.push_back(solid->z.top);
+    // Terrain that overlaps, or is closer than layer_tolerance, is one layer. The highest top comes first.
+    double lowest = std::numeric_limits<double>::infinity();  // of the last layer's terrain, m
+    for (const Span& span : std::span(out.spans).subspan(first_span)) {
+        if (!span.terrain) continue;
+        if (lowest <= span.top + layer_tolerance) {
+            lowest = std::min(lowest, span.bottom);
+        } else {
+            out.layers.push_back(span.top);
+            lowest = span.bottom;
+        }
+    }
 }
 
 /// Adds the intervals inside a filled piece, from the bottom up: its crossings in pairs. The number of crossings is odd
@@ -101,13 +108,13 @@ void ColumnBuilder::pair_crossings(std::vector<Solid>& crossings, double piece_b
         intervals.push_back({{crossings[i].z.top, crossings[i + 1].z.top}, crossings[i + 1].terrain});
 }
 
-/// Joins intervals that overlap or lie within `tolerance` of each other. The highest top gives the height and the label
-/// of the joined interval.
-void ColumnBuilder::join(std::vector<Solid>& intervals, double tolerance)
+/// Joins intervals that overlap or lie within touch_tolerance of each other. The highest top gives the height and the
+/// label of the joined interval.
+void ColumnBuilder::join(std::vector<Solid>& intervals)
 {
     if (intervals.size() < 2) return;
     const auto z_of = [](auto& solid) -> auto& { return solid.z; };
-    join_intervals(intervals, tolerance, z_of, [](Solid& solid, const Solid& next) {
+    join_intervals(intervals, touch_tolerance, z_of, [](Solid& solid, const Solid& next) {
         const bool same_top = std::abs(next.z.top - solid.z.top) <= touch_tolerance;
         if (same_top)
             solid.terrain = solid.terrain || next.terrain;

@@ -23,7 +23,7 @@ private:
     void add_piece(std::span<const SurfaceHit> hits, Column& out);
     void finish(std::size_t first_span, std::size_t first_water, Column& out);
     static void pair_crossings(std::vector<Solid>& crossings, double piece_bottom, std::vector<Solid>& intervals);
-    static void join(std::vector<Solid>& intervals, double tolerance);
+    static void join(std::vector<Solid>& intervals);
 
     std::vector<Solid> intervals_, crossings_;
 };

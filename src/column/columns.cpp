@@ -320,12 +320,11 @@ inline void Columns::add_inside(Slot& slot, const SeenTriangle& seen, const Tria
 
 inline void Columns::add_rim(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y)
 {
-    const auto hit = seen.hit_at_rim(plane, x, y);
-    if (!hit) return;
-    if (hit->filled)
-        listed(slot) = *hit;
-    else
-        add_sheet(slot, seen, plane, hit->z.top);
+    if (plane.filled) {
+        if (const auto hit = seen.hit_at_rim(plane, x, y)) listed(slot) = *hit;
+    } else if (const auto height = seen.sheet_at_rim(plane, x, y)) {
+        add_sheet(slot, seen, plane, *height);
+    }
 }
 
 void Columns::add_primitive(const Tile& tile, std::uint32_t element, const ColumnRange& range)

@@ -4,6 +4,7 @@
 #include "column/column_builder.h"
 #include "column/surface_hit.h"
 
+#include <bit>
 #include <optional>
 #include <span>
 
@@ -114,14 +115,20 @@ public:
     struct OpenGround {
         double terrain, water;
     };
-    /// Returns the surfaces of a column that contains one terrain surface, at most one water surface, and nothing else;
-    /// no surfaces for all other columns.
-    OpenGround open_ground(int i, int j) const
+    /// Writes the surfaces of the first columns of a row that contain one terrain surface, at most one water surface,
+    /// and nothing else; no surfaces for other columns.
+    void open_ground(int j, std::span<OpenGround> out) const
     {
-        constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-        const Slot& slot = slots_[number(i, j)];
-        if (slot.round != round_ || !slot.has_span || !slot.span.terrain || slot.has_more) return {nothing, nothing};
-        return {slot.span.top, slot.has_water ? slot.water : nothing};
+        // A number whose bits are all set is a NaN. There is no branch, because that cannot be foretold.
+        const auto if_exists = [](bool exists, double height) {
+            return std::bit_cast<double>(std::bit_cast<std::uint64_t>(height) | (std::uint64_t{exists} - 1));
+        };
+        const Slot* slot = slots_.data() + number(0, j);
+        for (OpenGround& ground : out) {
+            const bool is_open = (slot->round == round_) & slot->has_span & slot->span.terrain & !slot->has_more;
+            ground = {if_exists(is_open, slot->span.top), if_exists(is_open & slot->has_water, slot->water)};
+            ++slot;
+        }
     }
 
 private:

@@ -40,29 +40,29 @@ void extend(const Vec3& p, const Vec3& q, double x, double y, std::optional<Inte
 }
 
 /// Returns the interval of heights in which the vertical line through (x, y) lies in a vertical triangle, if it does.
-std::optional<Interval> segment(const std::array<Vec3, 3>& corners, double x, double y)
+std::optional<Interval> segment(const Vec3& a, const Vec3& b, const Vec3& c, double x, double y)
 {
     std::optional<Interval> joined;
-    for (std::size_t k = 0; k < 3; ++k) extend(corners[k], corners[(k + 1) % 3], x, y, joined);
+    extend(a, b, x, y, joined);
+    extend(b, c, x, y, joined);
+    extend(c, a, x, y, joined);
     return joined;
 }
 
-bool is_crossed(const std::array<Vec3, 3>& corners, double x, double y)
+bool is_crossed(const Vec3& a, const Vec3& b, const Vec3& c, double x, double y)
 {
-    const auto& [a, b, c] = corners;
     return edge_crosses(a, b, x, y) ^ edge_crosses(b, c, x, y) ^ edge_crosses(c, a, x, y);
 }
 
 /// Returns whether the vertical line passes through a triangle, edges included to touch_tolerance. `sign` is the sign
 /// of the triangle's area, seen from above.
-bool is_touched(const std::array<Vec3, 3>& corners, double sign, double x, double y)
+bool is_touched(const Vec3& a, const Vec3& b, const Vec3& c, double sign, double x, double y)
 {
     const auto is_left = [&](const Vec3& p, const Vec3& q) {
         const Vec2 edge = (q - p).head<2>();
         const double cross = edge.x() * (y - p.y()) - edge.y() * (x - p.x());
         return sign * cross >= 0 || cross * cross <= squared_tolerance * edge.squaredNorm();
     };
-    const auto& [a, b, c] = corners;
     return is_left(a, b) && is_left(b, c) && is_left(c, a);
 }
 
@@ -93,27 +93,50 @@ double SeenTriangle::height_at_rim(const TrianglePlane& plane, double x, double 
     return plane.height(x, y);
 }
 
-std::optional<SurfaceHit> SeenTriangle::hit_at_rim(const TrianglePlane& plane, double x, double y) const
+/// Returns whether the line passes through the rectangle around the triangle, seen from above, or nearly.
+bool SeenTriangle::is_near(double x, double y) const
 {
     constexpr double reach = touch_tolerance;
-    if (!((low_corner() <= Place(x + reach, y + reach)) && (high_corner() >= Place(x - reach, y - reach))).all())
-        return std::nullopt;
-    const std::array<Vec3, 3> corners = this->corners();
-    SurfaceHit out = hit_inside(plane, 0);
-    out.crosses = out.filled && is_crossed(corners, x, y);
-    if (out.crosses) out.crossing = height_at_rim(plane, x, y);
+    return ((low_corner() <= Place(x + reach, y + reach)) && (high_corner() >= Place(x - reach, y - reach))).all();
+}
+
+/// Returns whether the triangle, seen from above, is thinner than the tolerance. Then its height at a point is
+/// undefined.
+bool SeenTriangle::is_vertical(const TrianglePlane& plane) const
+{
     const auto squared_length = [](const Vec3& p, const Vec3& q) { return (q - p).head<2>().squaredNorm(); };
-    const auto& [a, b, c] = corners;
-    const double longest = std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
-    // If the triangle is thinner than the tolerance, its height at a point is undefined.
-    const bool is_vertical = plane.twice_area * plane.twice_area <= squared_tolerance * longest;
-    if (is_vertical) {
+    const double longest = std::max({squared_length(a_, b_), squared_length(b_, c_), squared_length(c_, a_)});
+    return plane.twice_area * plane.twice_area <= squared_tolerance * longest;
+}
+
+bool SeenTriangle::touches(const TrianglePlane& plane, double x, double y) const
+{
+    return is_touched(a_, b_, c_, plane.twice_area > 0 ? 1 : -1, x, y);
+}
+
+std::optional<double> SeenTriangle::sheet_at_rim(const TrianglePlane& plane, double x, double y) const
+{
+    if (!is_near(x, y) || is_vertical(plane) || !touches(plane, x, y)) return std::nullopt;
+    return height_at_rim(plane, x, y);
+}
+
+std::optional<SurfaceHit> SeenTriangle::hit_at_rim(const TrianglePlane& plane, double x, double y) const
+{
+    if (!plane.filled) {
+        const auto height = sheet_at_rim(plane, x, y);
+        return height ? std::optional(hit_inside(plane, *height)) : std::nullopt;
+    }
+    if (!is_near(x, y)) return std::nullopt;
+    SurfaceHit out = hit_inside(plane, 0);
+    out.crosses = is_crossed(a_, b_, c_, x, y);
+    if (out.crosses) out.crossing = height_at_rim(plane, x, y);
+    if (is_vertical(plane)) {
         // Computed even if `crosses` is true: because of rounding, a line in a vertical triangle may also cross it.
-        const auto met = out.filled ? segment(corners, x, y) : std::nullopt;
+        const auto met = segment(a_, b_, c_, x, y);
         out.touches = met.has_value();
         if (met) out.z = *met;
     } else {
-        out.touches = !out.crosses && is_touched(corners, plane.twice_area > 0 ? 1 : -1, x, y);
+        out.touches = !out.crosses && touches(plane, x, y);
         if (out.touches) out.z.bottom = out.z.top = height_at_rim(plane, x, y);
     }
     if (!out.crosses && !out.touches) return std::nullopt;

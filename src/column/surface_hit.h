@@ -60,8 +60,6 @@ public:
     Place low_corner() const { return a().min(b()).min(c()); }
     Place high_corner() const { return a().max(b()).max(c()); }
 
-    std::array<Vec3, 3> corners() const { return {a_, b_, c_}; }
-
     /// Which vertical lines pass through the triangle, one bit for each. Rim: so near to an edge that only hit_at_rim()
     /// can decide. All others are outside.
     struct Sides {
@@ -88,6 +86,8 @@ public:
     SurfaceHit hit_inside(const TrianglePlane& plane, double height) const;
     /// Returns the hit of a line at the rim, if it meets the triangle. A vertical triangle of a sheet is never met.
     std::optional<SurfaceHit> hit_at_rim(const TrianglePlane& plane, double x, double y) const;
+    /// The same for a triangle of a sheet: returns only the height of the hit, m.
+    std::optional<double> sheet_at_rim(const TrianglePlane& plane, double x, double y) const;
 
     /// Returns the hit of the vertical line through (x, y), if it meets the triangle.
     std::optional<SurfaceHit> hit(double x, double y) const;
@@ -98,6 +98,9 @@ private:
 
     const TilePiece& piece() const { return tile_.piece(triangle_); }
     const Vec3& corner(std::size_t k) const { return tile_.vertices[tile_.triangles[triangle_].corners[k]]; }
+    bool is_near(double x, double y) const;
+    bool is_vertical(const TrianglePlane& plane) const;
+    bool touches(const TrianglePlane& plane, double x, double y) const;  ///< if it is not vertical
     double height_at_rim(const TrianglePlane& plane, double x, double y) const;
 
     Place a() const { return a_.head<2>(); }

@@ -274,8 +274,9 @@ const Column& PoseJudge::column_at(const Vec2& place)
 }
 
 void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const Columns::OpenGround> ground,
-                          double offset, std::span<RowVerdict> out)
+                          std::span<const LayeredColumn> layered, double offset, std::span<RowVerdict> out)
 {
+    constexpr double decided = std::numeric_limits<double>::quiet_NaN();
     z_.resize(x.size());
     proofs_.resize(x.size());
     const Map& map = shared_.map;
@@ -283,16 +284,34 @@ void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const C
                             is_within(map, {x.back(), y, 0});
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto& [terrain, water] = ground[i];
-        z_[i] = terrain + offset;
+        z_[i] = terrain + offset;  // NaN without terrain
         if (!are_within && !is_within(map, {x[i], y, z_[i]}))
             out[i] = {Verdict::Outside, false};
         else if (is_submerged(terrain, water, shared_.options.max_water_depth))
             out[i] = {Verdict::Submerged, false};
         else
             continue;
-        z_[i] = std::numeric_limits<double>::quiet_NaN();  // decided, or without terrain
+        z_[i] = decided;
+    }
+    for (const auto& [i, column] : layered) {
+        Judgement judged;
+        if (std::isnan(z_[i])) continue;
+        if (judge_ground(column, {x[i], y, z_[i]}, judged)) {
+            if (!mask_->is_pierced(column.spans, z_[i])) continue;
+            judged.verdict = Verdict::Collision;
+        }
+        out[i] = {judged.verdict, false};
+        z_[i] = decided;
     }
     mask_->prove(x, y, z_, proofs_);
+    const auto judge_one = [&](std::size_t i, const ColumnView& column) {
+        Judgement judged;
+        judge_collision(proofs_[i], &column, {x[i], y, z_[i]}, false, judged);
+        out[i] = {judged.verdict, judged.exact_check};
+        z_[i] = decided;
+    };
+    for (const auto& [i, column] : layered)
+        if (!std::isnan(z_[i])) judge_one(i, column);
     for (std::size_t i = 0; i < x.size(); ++i) {
         if (std::isnan(z_[i])) continue;
         if (proofs_[i] == Proof::Free) {
@@ -301,14 +320,8 @@ void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const C
         }
         const double terrain = ground[i].terrain;
         const Span surface{terrain, terrain, 0, true, true};
-        if (proofs_[i] == Proof::Blocked || mask_->is_pierced({&surface, 1}, z_[i])) {
-            out[i] = {Verdict::Collision, false};
-            continue;
-        }
-        const ColumnView column({&surface, 1}, {}, {});
-        Judgement judged;
-        check_exactly(&column, {x[i], y, z_[i]}, false, judged);
-        out[i] = {judged.verdict, judged.exact_check};
+        if (mask_->is_pierced({&surface, 1}, z_[i])) proofs_[i] = Proof::Blocked;
+        judge_one(i, ColumnView({&surface, 1}, {}, {}));
     }
 }
 

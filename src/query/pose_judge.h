@@ -85,11 +85,16 @@ public:
     };
     /// Returns whether judge_row() can be called.
     bool can_judge_rows() const { return mask_ && !footing_ && max_height_ == std::numeric_limits<double>::infinity(); }
+    /// The column of a pose in a row that has more than open ground.
+    struct LayeredColumn {
+        std::size_t pose;  ///< its index in the row
+        ColumnView column;
+    };
     /// Judges a row of poses: at x[i], ascending, and y, `offset` >= 0 above the terrain of ground[i]. It takes less
-    /// time than judge() for each pose. The column of each pose must have nothing but ground[i]; poses without terrain
-    /// are left out.
-    void judge_row(std::span<const double> x, double y, std::span<const Columns::OpenGround> ground, double offset,
-                   std::span<RowVerdict> out);
+    /// time than judge() for each pose. The column of each pose must have nothing but ground[i], or be in `layered`.
+    /// Poses without terrain are left out.
+    void judge_row(std::span<const double> x, double y, std::span<const Columns::OpenGround> ground,
+                   std::span<const LayeredColumn> layered, double offset, std::span<RowVerdict> out);
     /// Returns Valid or Collision. Does not look at ground and footing.
     Judgement judge_collision(const Vec3& position);
 

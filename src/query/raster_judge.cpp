@@ -64,12 +64,18 @@ void RasterJudge::judge_row(Worker& worker, std::span<const double> x, int j, do
     const std::span<PoseJudge::RowVerdict> verdicts = std::span(worker.verdicts).first(x.size());
     const bool is_simple = is_simple_ && worker.judge->can_judge_rows();
     if (is_simple) {
+        worker.columns.open_ground(j, ground);
+        worker.layered.clear();
         for (std::size_t i = 0; i < x.size(); ++i) {
-            ground[i] = worker.columns.open_ground(int(i), j);
-            if (!ground_z_.contains(ground[i].terrain, touch_tolerance))
-                ground[i].terrain = std::numeric_limits<double>::quiet_NaN();
+            if (ground_z_.contains(ground[i].terrain, touch_tolerance)) continue;
+            ground[i].terrain = std::numeric_limits<double>::quiet_NaN();
+            const ColumnView column = worker.columns.at(int(i), j);
+            const std::span<const double> heights = ground_layers(column);
+            if (heights.size() != 1) continue;
+            ground[i].terrain = heights.front();
+            worker.layered.push_back({i, column});
         }
-        worker.judge->judge_row(x, y, ground, offset_, verdicts);
+        worker.judge->judge_row(x, y, ground, worker.layered, offset_, verdicts);
     }
     for (std::size_t i = 0; i < x.size(); ++i) {
         if (is_simple && !std::isnan(ground[i].terrain)) {

@@ -66,6 +66,7 @@ private:
         Columns columns;                                           ///< of the current block
         std::array<double, most_columns> x;                        ///< of the block's columns
         std::array<Columns::OpenGround, most_columns> ground;      ///< in one row of the block
+        std::vector<PoseJudge::LayeredColumn> layered;             ///< in the same row
         std::array<PoseJudge::RowVerdict, most_columns> verdicts;  ///< in the same row
 
         explicit Worker(const RasterJudge& raster)
