@@ -137,7 +137,7 @@ void run_embree(const BenchArgs& args)
     const RasterGrid grid = raster_grid(triangles.bounds, {.step = args.step});
     const EmbreeOnly embree(std::move(triangles), husky_box(), EmbreeOnly::Use::Once);
     VerdictCounts counts;
-    for (const auto& pose : embree.raster_top(grid, args.offset, 0))
+    for (const auto& pose : embree.raster_top(grid, args.offset, 0, EmbreeOnly::Search::PointQuery))
         if (pose) ++counts[pose->verdict];
     for (const Verdict verdict : all_verdicts) std::cout << to_string(verdict) << "," << counts[verdict] << "\n";
 }

@@ -90,7 +90,8 @@ void Workbench::compare_2d(const RasterWork& work, std::vector<std::string>& out
         out.push_back(setting_.name + " " + work.name + ": " + differences.text(rival));
     };
     add("plain FCL", plain_fcl().raster_top(ours.grid, work.offset, 0));
-    if (has_embree_only()) add("Embree alone", embree_only().raster_top(ours.grid, work.offset, 0));
+    if (has_embree_only())
+        add("Embree alone", embree_only().raster_top(ours.grid, work.offset, 0, EmbreeOnly::Search::OurOwn));
 }
 
 std::string Workbench::compare_3d()

@@ -73,12 +73,13 @@ struct EmbreeOnly::Impl {
         return near.found;
     }
 
-    bool collides(const Vec3& position) const
+    bool collides(const Vec3& position, Search search) const
     {
         for (TurnedBox box : parts) {
             box.centre += position.cast<float>();
-            if (tree ? tree->meets(box)
-                     : meets(rays.terrain, triangles[0], box) || meets(rays.obstacles, triangles[1], box))
+            if (search == Search::OurOwn
+                    ? tree->meets(box)
+                    : meets(rays.terrain, triangles[0], box) || meets(rays.obstacles, triangles[1], box))
                 return true;
         }
         return false;
@@ -105,11 +106,13 @@ EmbreeOnly::EmbreeOnly(TriangleScene scene, const Robot& robot, Use use)
 
 EmbreeOnly::~EmbreeOnly() = default;
 
-TopRaster EmbreeOnly::raster_top(const RasterGrid& grid, double offset, int threads) const
+TopRaster EmbreeOnly::raster_top(const RasterGrid& grid, double offset, int threads, Search search) const
 {
+    if (search == Search::OurOwn && !impl_->tree)
+        throw std::invalid_argument("Embree alone: our own search needs Use::Often");
     TopRaster out(std::size_t(grid.rows) * std::size_t(grid.cols));
     parallel_for(std::size_t(grid.rows), threads, {}, [&](std::size_t row) {
-        const auto collides = [this](const Vec3& position) { return impl_->collides(position); };
+        const auto collides = [&](const Vec3& position) { return impl_->collides(position, search); };
         const double y = grid.y_of(int(row));
         for (int i = 0; i < grid.cols; ++i)
             out[row * std::size_t(grid.cols) + std::size_t(i)] = impl_->rays.judge_top(grid.x_of(i), y, offset,

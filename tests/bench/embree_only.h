@@ -21,14 +21,20 @@ public:
 
     /// For what it is built. Answers are the same.
     enum class Use {
-        Once,  ///< fast to build: collisions ask Embree for the triangles around a point
-        Often  ///< fast to ask: better trees for rays, and one more tree, a TriangleTree, for collisions
+        Once,  ///< fast to build
+        Often  ///< fast to ask: better trees for rays, and one more tree, a TriangleTree
+    };
+    /// How it finds the triangles near a robot. Answers are the same.
+    enum class Search {
+        PointQuery,  ///< asks Embree for the triangles around a point (rtcPointQuery), in the trees for rays
+        OurOwn       ///< by the TriangleTree, which is faster; only with Use::Often
     };
     /// Uses all cores. Throws std::invalid_argument if the robot has a part that is not a box.
     EmbreeOnly(TriangleScene scene, const spawnfield::Robot& robot, Use use);
     ~EmbreeOnly();
 
-    TopRaster raster_top(const spawnfield::RasterGrid& grid, double offset, int threads) const;  ///< yaw is 0
+    TopRaster raster_top(const spawnfield::RasterGrid& grid, double offset, int threads,
+                         Search search) const;  ///< yaw is 0
 
 private:
     struct Impl;

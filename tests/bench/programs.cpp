@@ -155,11 +155,15 @@ void measure_samples(const std::filesystem::path& map, const TargetOptions& opti
     report(64, "2,000 samples 2.5 m apart, peak memory", few.peak_memory / mega, "MB", few.peak_memory);
     const Query settled = query_by_process(sample_args(map, options.quick, "settled"), folder, options.rounds);
     report(200, "2,000 settled samples 2.5 m apart, whole process", settled.seconds * 1e3, "ms", settled.peak_memory);
-    const Query many = query_by_process(
-        {"sample", map.string(), "-n", options.quick ? "1000" : "1000000", "--min-distance", "0", "--stance", "level"},
-        folder, options.rounds);
-    report(1, "1,000,000 samples, CPU time of the process", many.cpu_seconds, "s", many.peak_memory);
-    on_row(row("hills", "1,000,000 samples, whole process", many.seconds, "s", many.peak_memory));
+    const auto many_at = [&](const char* offset) {
+        return query_by_process({"sample", map.string(), "-n", options.quick ? "1000" : "1000000", "--min-distance",
+                                 "0", "--stance", "level", "--offset", offset},
+                                folder, options.rounds);
+    };
+    const Query high = many_at("1.0"), many = many_at("auto");
+    report(1, "1,000,000 samples, offset 1.0 m, CPU time", high.cpu_seconds, "s", high.peak_memory);
+    on_row(row("hills", "1,000,000 samples, offset auto, CPU time", many.cpu_seconds, "s", many.peak_memory));
+    on_row(row("hills", "1,000,000 samples, offset auto, whole process", many.seconds, "s", many.peak_memory));
 }
 
 /// A raster of top layers by whole programs: spawnfield on a baked map, and EmbreeOnly on the triangles.

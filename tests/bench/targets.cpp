@@ -124,6 +124,7 @@ TargetRow measure(const Target& target, const Workbench::Stage& stage, int threa
         if (row.stage.ends_with(" exhaustive")) out.over_exhaustive = times_slower(row, ours);
         if (row.stage.ends_with(" fcl")) out.over_fcl = times_slower(row, ours);
         if (row.stage.ends_with(" embree")) out.over_embree = times_slower(row, ours);
+        if (row.stage.ends_with(" embree-query")) out.over_embree_query = times_slower(row, ours);
     }
     set_measured(target, rows, out);
     out.exact_share = double(ours.exact_checks) / double(ours.items);
@@ -174,8 +175,8 @@ std::vector<TargetRow> measure_targets(const TargetOptions& options)
 
 std::string target_head()
 {
-    return formatted("%-9s %-52s %7s %-38s %10s %-12s %7s %7s %7s %-8s %8s %8s\n", "scene", "work", "threads", "target",
-                     "measured", "", "/ (a)", "/ (b)", "/ (d)", "reached", "MB", "exact %");
+    return formatted("%-9s %-52s %7s %-38s %10s %-12s %7s %7s %7s %7s %-8s %8s %8s\n", "scene", "work", "threads",
+                     "target", "measured", "", "/ (a)", "/ (b)", "/ (d)", "/ query", "reached", "MB", "exact %");
 }
 
 std::string target_line(const TargetRow& row)
@@ -183,9 +184,10 @@ std::string target_line(const TargetRow& row)
     const std::string threads = row.threads == 0 ? "" : std::to_string(row.threads);
     const std::string memory = row.memory > 0 ? formatted("%.0f", row.memory / mega) : "-";
     const std::string share = row.exact_share ? formatted("%.2f", 100 * *row.exact_share) : "-";
-    return formatted("%-9s %-52s %7s %-38s %10.4g %-12s %7s %7s %7s %-8s %8s %8s\n", row.scene.c_str(),
+    return formatted("%-9s %-52s %7s %-38s %10.4g %-12s %7s %7s %7s %7s %-8s %8s %8s\n", row.scene.c_str(),
                      row.work.c_str(), threads.c_str(), row.target.c_str(), row.measured, row.unit.c_str(),
                      ratio(row.over_exhaustive).c_str(), ratio(row.over_fcl).c_str(), ratio(row.over_embree).c_str(),
+                     ratio(row.over_embree_query).c_str(),
                      !row.reached   ? ""
                      : *row.reached ? "yes"
                                     : "NO",
@@ -195,16 +197,17 @@ std::string target_line(const TargetRow& row)
 std::string target_csv(const std::vector<TargetRow>& rows)
 {
     std::string out =
-        "scene,work,threads,target,measured,unit,times_exhaustive,times_fcl,times_embree,reached,memory_mb,"
+        "scene,work,threads,target,measured,unit,times_exhaustive,times_fcl,times_embree,times_embree_query,reached,"
+        "memory_mb,"
         "exact_share\n";
     const auto number = [](const std::optional<double>& value) {
         return value ? formatted("%.6g", *value) : std::string();
     };
     for (const TargetRow& row : rows)
-        out += formatted("%s,\"%s\",%d,\"%s\",%.6g,\"%s\",%s,%s,%s,%s,%.1f,%s\n", row.scene.c_str(), row.work.c_str(),
-                         row.threads, row.target.c_str(), row.measured, row.unit.c_str(),
+        out += formatted("%s,\"%s\",%d,\"%s\",%.6g,\"%s\",%s,%s,%s,%s,%s,%.1f,%s\n", row.scene.c_str(),
+                         row.work.c_str(), row.threads, row.target.c_str(), row.measured, row.unit.c_str(),
                          number(row.over_exhaustive).c_str(), number(row.over_fcl).c_str(),
-                         number(row.over_embree).c_str(),
+                         number(row.over_embree).c_str(), number(row.over_embree_query).c_str(),
                          !row.reached   ? ""
                          : *row.reached ? "yes"
                                         : "no",

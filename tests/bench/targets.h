@@ -13,7 +13,9 @@ struct TargetRow {
     std::string unit = {};                       ///< of `measured`: "s", "ms", "ms per 1,000", "MB", "times"
     std::optional<double> over_exhaustive = {};  ///< time per item of (a), the exhaustive query, divided by ours
     std::optional<double> over_fcl = {};         ///< time per item of (b), PlainFcl, divided by ours
-    std::optional<double> over_embree = {};      ///< time per item of (d), EmbreeOnly, divided by ours
+    /// Time per item of (d), EmbreeOnly, divided by ours; of a raster in this process with its faster search.
+    std::optional<double> over_embree = {};
+    std::optional<double> over_embree_query = {};  ///< the same for the search that Embree has
     std::optional<bool> reached = {};
     double memory = 0;  ///< bytes of the whole process, or bytes that a query needed in addition to scene and map
     std::optional<double> exact_share = {};  ///< share of the items that FCL decided

@@ -30,6 +30,6 @@ struct EmbreeOnly::Impl {};
 bool EmbreeOnly::is_available() { return false; }
 EmbreeOnly::EmbreeOnly(TriangleScene, const spawnfield::Robot&, Use) { fail(); }
 EmbreeOnly::~EmbreeOnly() = default;
-TopRaster EmbreeOnly::raster_top(const spawnfield::RasterGrid&, double, int) const { fail(); }
+TopRaster EmbreeOnly::raster_top(const spawnfield::RasterGrid&, double, int, Search) const { fail(); }
 
 }  // namespace bench

@@ -108,16 +108,19 @@ Measurement Workbench::rival_raster_2d(const RasterWork& work, const Make& make)
 /// Adds the alternatives that answer a raster of top layers.
 void Workbench::add_top_rivals(const RasterWork& work, Stage& stage)
 {
-    const auto add = [&](const char* name, const auto& peer) {
-        stage.rivals.push_back({name, [this, work, peer](int threads) {
+    const auto add = [&](const char* name, const auto& peer, auto... how) {
+        stage.rivals.push_back({name, [this, work, peer, how...](int threads) {
                                     const auto& ready = peer();  // is built before the clock starts
                                     return rival_raster_2d(work, [&](const RasterGrid& grid) {
-                                        return ready.raster_top(grid, work.offset, threads);
+                                        return ready.raster_top(grid, work.offset, threads, how...);
                                     });
                                 }});
     };
     if (has_plain_fcl()) add("fcl", [this]() -> const PlainFcl& { return plain_fcl(); });
-    if (has_embree_only()) add("embree", [this]() -> const EmbreeOnly& { return embree_only(); });
+    if (!has_embree_only()) return;
+    const auto embree = [this]() -> const EmbreeOnly& { return embree_only(); };
+    add("embree", embree, EmbreeOnly::Search::OurOwn);
+    add("embree-query", embree, EmbreeOnly::Search::PointQuery);
 }
 
 /// Adds a raster at several headings, and beside it the same raster at one heading.
