@@ -57,7 +57,11 @@ inline Four differences(const double* a, const double* b, const double* c, const
         return out;
     };
     const Two first = two_at(a) - two_at(b), second = two_at(c) - two_at(d);
+#ifdef __SSE2__
+    return Four(_mm_movelh_ps(_mm_cvtpd_ps(__m128d(first)), _mm_cvtpd_ps(__m128d(second))));
+#else
     return Four{float(first[0]), float(first[1]), float(second[0]), float(second[1])};
+#endif
 }
 
 /// Returns bits 0 .. 3 from the first masks and bits 4 .. 7 from the second.
