@@ -198,8 +198,7 @@ std::string target_csv(const std::vector<TargetRow>& rows)
 {
     std::string out =
         "scene,work,threads,target,measured,unit,times_exhaustive,times_fcl,times_embree,times_embree_query,reached,"
-        "memory_mb,"
-        "exact_share\n";
+        "memory_mb,exact_share\n";
     const auto number = [](const std::optional<double>& value) {
         return value ? formatted("%.6g", *value) : std::string();
     };
