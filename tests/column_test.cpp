@@ -192,6 +192,31 @@ TEST_CASE("columns that all meet the box of each triangle of a full tile are tho
     CHECK(different_columns_at_places(scene, 1) == 0);
 }
 
+TEST_CASE("neighbouring columns of level surfaces, which are often the same, are those that are computed one by one")
+{
+    Random random(11);
+    const auto in_tenths = [&](int low, int high) { return 0.1 * (low + random.below(high - low + 1)); };
+    int different = 0;
+    for (int round = 0; round < 40; ++round) {
+        Scene scene;
+        hand::add_mesh(scene, Label::Terrain, hand::relief(4, 6, [&](double x, double) {
+                           return round % 2 == 0 ? 0.05 : 0.03 * x;  // else no two columns are the same
+                       }));
+        for (int k = 3 + random.below(20); k > 0; --k) {
+            const Pose at{{in_tenths(-25, 25), in_tenths(-25, 25), in_tenths(-5, 20)}, Mat3::Identity()};
+            const double size_x = in_tenths(2, 30), size_y = in_tenths(2, 30);
+            const Label label = random.chance(0.5) ? Label::Terrain : Label::Obstacle;
+            if (random.chance(0.6))
+                hand::add_mesh(scene, label, hand::moved(hand::box({size_x, size_y, in_tenths(1, 5)}), at));
+            else
+                hand::add_mesh(scene, random.chance(0.3) ? Label::Water : label,
+                               hand::moved(hand::rectangle(size_x, size_y), at));
+        }
+        for (const int cols : {31, 61, 100}) different += different_columns(scene, cols);
+    }
+    CHECK(different == 0);
+}
+
 TEST_CASE("blocks in the same memory are those in fresh memory, also after 65,536 of them")
 {
     const Geometry geometry(hard_case(3).scene);

@@ -64,18 +64,24 @@ inline Four differences(const double* a, const double* b, const double* c, const
 #endif
 }
 
-/// Returns bits 0 .. 3 from the first masks and bits 4 .. 7 from the second.
-inline std::uint32_t bits_of(const FourMasks& first, const FourMasks& second)
+/// Returns a bit for each mask.
+inline std::uint32_t bits_of(const FourMasks& masks)
 {
 #ifdef __SSE2__
-    return std::uint32_t(_mm_movemask_ps(__m128(first)) | _mm_movemask_ps(__m128(second)) << 4);
+    return std::uint32_t(_mm_movemask_ps(__m128(masks)));
 #else
-    const FourMasks marks = (first & FourMasks{1, 2, 4, 8}) | (second & FourMasks{16, 32, 64, 128});
+    const FourMasks marks = masks & FourMasks{1, 2, 4, 8};
     std::array<std::uint64_t, 2> twos;
     std::memcpy(&twos, &marks, sizeof twos);
     const std::uint64_t both = twos[0] | twos[1];
-    return std::uint32_t(both | both >> 32) & 255;
+    return std::uint32_t(both | both >> 32) & 15;
 #endif
+}
+
+/// Returns bits 0 .. 3 from the first masks and bits 4 .. 7 from the second.
+inline std::uint32_t bits_of(const FourMasks& first, const FourMasks& second)
+{
+    return bits_of(first) | bits_of(second) << 4;
 }
 
 /// Returns whether all masks are set.

@@ -186,7 +186,7 @@ FourTriangles::Marks FourTriangles::compare(const FourBoxes& box) const
     const Four by_normal = magnitude(dot(normal, seen[0])) - dot(steep, box.half_),
                normal_limit = depth * (steep[0] + steep[1] + steep[2]) + noise * longest;
     FourMasks apart = by_normal > normal_limit;
-    if (bits_of(apart, apart) == 255) return {15, 0};
+    if (bits_of(apart) == 15) return {15, 0};
     const Four by_box = gap_on_box_axes(seen, box.half_), box_limit = depth + 16 * rounding * size,
                by_edges = gap_on_edge_axes(seen, along, normal, box.half_),
                edge_limit = 1.5F * depth * longest + noise;  // no such axis is longer than 1.5 longest

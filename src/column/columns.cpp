@@ -111,8 +111,10 @@ void Columns::start(int cols, int rows)
     column_.spans.clear();
     column_.layers.clear();
     column_.water.clear();
+    hits_.clear();
     listed_.clear();
     full_.clear();
+    last_ = nullptr;
 }
 
 void Columns::set(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
@@ -161,9 +163,9 @@ void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces
     auto slot = slots_.begin();
     for (int j = grid.first_row; j < grid.first_row + grid.rows; ++j)
         for (int i = grid.first_col; i < grid.first_col + grid.cols; ++i, ++slot) {
-            find_hits(geometry, grid.x_of(i), grid.y_of(j), surfaces, hits_);
-            if (hits_.empty()) continue;
-            builder_.build(hits_, column_);
+            find_hits(geometry, grid.x_of(i), grid.y_of(j), surfaces, ordered_);
+            if (ordered_.empty()) continue;
+            builder_.build(ordered_, column_);
             end_column(*slot);
         }
 }
@@ -213,17 +215,35 @@ void Columns::add_triangle(const SeenTriangle& seen, const ColumnRange& range)
     const TriangleSides sides(seen, place_of(range.first_col, range.first_row),
                               place_of(range.last_col, range.last_row));
     const TrianglePlane plane(seen);  // nearly all triangles with a range of columns are met by one
-    constexpr int width = TriangleSides::width;
-    for (int first = range.first_col; first <= range.last_col; first += width) {
-        const double* const x = x_.data() + first;
+    const bool is_shared = plane.filled && plane.is_level();  // all lines inside have the same hit
+    std::uint32_t shared = none;
+    const auto add = [&](Slot& slot, double x, double y) {
+        if (shared != none) {
+            list(slot, shared);
+            return;
+        }
+        add_inside(slot, seen, plane, x, y);
+        if (is_shared) shared = std::uint32_t(hits_.size() - 1);
+    };
+    const auto add_at_rim = [&](Slot& slot, double x, double y) { add_rim(slot, seen, plane, x, y); };
+    constexpr int width = TriangleSides::width, height = TriangleSides::most_rows;
+    for (int col = range.first_col; col <= range.last_col; col += width) {
+        const double* const x = x_.data() + col;
         const TriangleSides::Lines lines = sides.at(x);
-        const std::uint32_t asked = 15 >> std::max(0, first + width - 1 - range.last_col);
-        Slot* slots = slots_.data() + number(first, range.first_row);
-        for (int j = range.first_row; j <= range.last_row; ++j, slots += cols_) {
-            const double y = y_[std::size_t(j)];
-            const auto [inside, rim] = sides.of(lines, y);  // no branch depends on a single line
-            for_each_bit(inside & asked, [&](std::uint32_t k) { add_inside(slots[k], seen, plane, x[k], y); });
-            for_each_bit(rim & asked, [&](std::uint32_t k) { add_rim(slots[k], seen, plane, x[k], y); });
+        const std::uint64_t asked = TriangleSides::first_lines(range.last_col + 1 - col);
+        for (int row = range.first_row; row <= range.last_row; row += height) {
+            const double* const y = y_.data() + row;
+            Slot* const slots = slots_.data() + number(col, row);
+            const TriangleSides::Sides here = sides.of(lines,
+                                                       {y, std::size_t(std::min(height, range.last_row + 1 - row))});
+            const auto add_each = [&](std::uint64_t bits, const auto& add_one) {
+                for_each_bit(bits & asked, [&](std::uint32_t bit) {
+                    const std::uint32_t i = bit % width, j = bit / width;
+                    add_one(slots[j * std::uint32_t(cols_) + i], x[i], y[j]);
+                });
+            };
+            add_each(here.inside, add);
+            add_each(here.rim, add_at_rim);
         }
     }
 }
@@ -266,7 +286,7 @@ inline void Columns::pair(const Tile& tile, std::uint32_t line, std::uint64_t el
     while (triangles != 0) add_next();
     for_each_bit(elements & ~are_triangles, [&](std::uint32_t element) {
         if (const auto hit = hit_of(tile, element, lines_.at[line].x(), lines_.at[line].y()))
-            listed(slots_[lines_.slot[line]]) = *hit;
+            list_new(slots_[lines_.slot[line]]) = *hit;
     });
 }
 
@@ -290,10 +310,11 @@ void Columns::add_pairs(const Tile& tile, const ElementBox& box)
         const std::uint32_t asked = (1U << std::min(pairs_.count - first, width)) - 1;
         const SeenTriangle::Sides sides = four.sides(rim);
         const std::uint32_t inside = sides.inside & asked, at_rim = sides.rim & asked;
-        for (std::size_t k = 0; k < width; ++k) {
-            inside_.add(pairs_.at[first + k], (inside >> k & 1) != 0);
-            rim_.add(pairs_.at[first + k], (at_rim >> k & 1) != 0);
-        }
+        const auto keep = [&](PairList& list, std::uint32_t bits) {
+            for (std::size_t k = 0; k < width; ++k) list.add(pairs_.at[first + k], (bits >> k & 1) != 0);
+        };
+        keep(inside_, inside);
+        if (at_rim != 0) keep(rim_, at_rim);
     }
     const auto take = [&](PairList& list, const auto& add) {
         for (std::size_t i = 0; i < list.count; ++i) {
@@ -309,19 +330,21 @@ void Columns::add_pairs(const Tile& tile, const ElementBox& box)
     pairs_.count = 0;
 }
 
-inline void Columns::add_inside(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y)
+[[gnu::always_inline]] inline void Columns::add_inside(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane,
+                                                       double x, double y)
 {
     const double height = plane.height(x, y);
     if (plane.filled)
-        listed(slot) = seen.hit_inside(plane, height);
+        list_new(slot) = seen.hit_inside(plane, height);
     else
         add_sheet(slot, seen, plane, height);
 }
 
-inline void Columns::add_rim(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y)
+[[gnu::always_inline]] inline void Columns::add_rim(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane,
+                                                    double x, double y)
 {
     if (plane.filled) {
-        if (const auto hit = seen.hit_at_rim(plane, x, y)) listed(slot) = *hit;
+        if (const auto hit = seen.hit_at_rim(plane, x, y)) list_new(slot) = *hit;
     } else if (const auto height = seen.sheet_at_rim(plane, x, y)) {
         add_sheet(slot, seen, plane, *height);
     }
@@ -332,7 +355,7 @@ void Columns::add_primitive(const Tile& tile, std::uint32_t element, const Colum
     for (int j = range.first_row; j <= range.last_row; ++j)
         for (int i = range.first_col; i <= range.last_col; ++i)
             if (const auto hit = hit_of(tile, element, x_[std::size_t(i)], y_[std::size_t(j)]))
-                listed(slots_[number(i, j)]) = *hit;
+                list_new(slots_[number(i, j)]) = *hit;
 }
 
 /// Empties a slot that was last used for another block.
@@ -344,7 +367,8 @@ inline void Columns::refresh(Slot& slot)
 }
 
 /// Adds the hit of a sheet at height z, unless the slot has the same hit already: triangles share corners and edges.
-inline void Columns::add_sheet(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double z)
+[[gnu::always_inline]] inline void Columns::add_sheet(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane,
+                                                      double z)
 {
     refresh(slot);
     if (plane.water) {
@@ -363,32 +387,59 @@ inline void Columns::add_sheet(Slot& slot, const SeenTriangle& seen, const Trian
             return;
         }
     }
-    listed(slot) = seen.hit_inside(plane, z);
+    list_new(slot) = seen.hit_inside(plane, z);
 }
 
 /// Adds a hit to the list of a column, and returns it, to be set. So it need not be copied, which would wait for all of
 /// its parts.
-SurfaceHit& Columns::listed(Slot& slot)
+SurfaceHit& Columns::list_new(Slot& slot)
+{
+    list(slot, std::uint32_t(hits_.size()));
+    return hits_.emplace_back();
+}
+
+/// Adds hits_[hit] to the list of a column.
+[[gnu::always_inline]] inline void Columns::list(Slot& slot, std::uint32_t hit)
 {
     refresh(slot);
     if (!slot.has_more) full_.push_back(std::uint32_t(&slot - slots_.data()));
-    ListedHit& out = listed_.emplace_back();
-    out.next = slot.has_more ? slot.index : none;
+    listed_.push_back({hit, slot.has_more ? slot.index : none});
     slot.has_more = true;
     slot.index = std::uint32_t(listed_.size() - 1);
-    return out.hit;
 }
 
-/// Appends the column of a slot and its list of hits to column_.
+/// Returns whether a slot has the same hits as the last one that was completed: neighbouring columns of level surfaces.
+bool Columns::is_like_last(const Slot& slot) const
+{
+    const auto differ = [](double a, double b) {  // also 0 and -0
+        return std::bit_cast<std::uint64_t>(a) != std::bit_cast<std::uint64_t>(b);
+    };
+    if (last_ == nullptr || slot.has_span != last_->has_span || slot.has_water != last_->has_water) return false;
+    if (slot.has_span && (slot.span != last_->span || differ(slot.span.top, last_->span.top))) return false;
+    if (slot.has_water && differ(slot.water, last_->water)) return false;
+    std::uint32_t a = slot.index, b = last_hit_;
+    for (; a != none && b != none; a = listed_[a].next, b = listed_[b].next)
+        if (listed_[a].hit != listed_[b].hit) return false;
+    return a == b;
+}
+
+/// Appends the column of a slot and its list of hits to column_, unless the last column is the same.
 void Columns::complete(Slot& slot)
 {
+    if (is_like_last(slot)) {
+        slot.index = last_->index;
+        return;
+    }
+    last_ = &slot;
+    last_hit_ = slot.index;
     order_.clear();
     for (std::uint32_t h = slot.index; h != none; h = listed_[h].next)
-        order_.push_back(std::uint64_t{listed_[h].hit.element} << 32 | h);
+        order_.push_back(std::uint64_t{hits_[listed_[h].hit].element} << 32 | listed_[h].hit);
+    std::reverse(order_.begin(), order_.end());  // nearly in order: the last hit came first
     std::sort(order_.begin(), order_.end());
-    hits_.clear();
-    for (const std::uint64_t both : order_) hits_.push_back(listed_[std::uint32_t(both)].hit);
-    builder_.build(hits_, column_, {&slot.span, slot.has_span}, {&slot.water, slot.has_water});
+    ordered_.clear();
+    for (const std::uint64_t both : order_) ordered_.push_back(hits_[std::uint32_t(both)]);
+    builder_.build(ordered_, column_, {&slot.span, slot.has_span}, {&slot.water, slot.has_water});
     end_column(slot);
 }
 

@@ -150,7 +150,7 @@ private:
     };
     /// A hit that its column's slot cannot hold.
     struct ListedHit {
-        SurfaceHit hit;
+        std::uint32_t hit;   ///< index in hits_; columns share the hits of level triangles
         std::uint32_t next;  ///< index in listed_ of another hit of the column, or `none`
     };
     static constexpr std::uint32_t none = 0xffffffff;
@@ -189,7 +189,9 @@ private:
     void add_primitive(const Tile& tile, std::uint32_t element, const ColumnRange& range);
     void refresh(Slot& slot);
     void add_sheet(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double z);
-    SurfaceHit& listed(Slot& slot);
+    SurfaceHit& list_new(Slot& slot);
+    void list(Slot& slot, std::uint32_t hit);
+    bool is_like_last(const Slot& slot) const;
     void complete_all();
     void complete(Slot& slot);
     void end_column(Slot& slot);
@@ -207,10 +209,13 @@ private:
     std::vector<Start> starts_;
 
     // Only used while the columns are computed:
+    std::vector<SurfaceHit> hits_;  ///< of all columns of the block, as far as slots cannot hold them
     std::vector<ListedHit> listed_;
     std::vector<std::uint32_t> full_;   ///< the slots whose columns have hits in listed_
     std::vector<std::uint64_t> order_;  ///< of a column's hits: their elements, and, in the lower half, their places
-    std::vector<SurfaceHit> hits_;
+    std::vector<SurfaceHit> ordered_;   ///< the hits of a column
+    const Slot* last_ = nullptr;        ///< the last one that was completed
+    std::uint32_t last_hit_ = none;     ///< its index was this one before
     ColumnBuilder builder_;
 };
 

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <span>
 
 namespace spawnfield {
 
@@ -44,6 +45,9 @@ struct TrianglePlane {
     {
         return std::min(std::max(z + slope_x * (at_x - x) + slope_y * (at_y - y), low), high);
     }
+    /// Returns whether the height is certainly the same everywhere. If the first corner is at -0 m, the height may be
+    /// 0 or -0.
+    bool is_level() const { return low == high && !(z == 0 && std::signbit(z)); }
 };
 
 /// A triangle that is intersected with vertical lines.
@@ -163,7 +167,20 @@ public:
     /// Returns the lines at x[0] .. x[3], m.
     Lines at(const double* x) const;
 
-    SeenTriangle::Sides of(const Lines& lines, double y) const;
+    static constexpr int most_rows = 64 / width;
+    /// Four bits for each row of lines; otherwise as in SeenTriangle::Sides.
+    struct Sides {
+        std::uint64_t inside, rim;
+    };
+    /// Looks at these lines in 1 .. most_rows rows at y, m. No branch depends on a line.
+    Sides of(const Lines& lines, std::span<const double> y) const;
+
+    /// Returns the bits of the first lines of each row, 1 or more of them.
+    static std::uint64_t first_lines(int count)
+    {
+        constexpr std::uint64_t first_of_each_row = 0x1111111111111111;
+        return first_of_each_row * (15U >> std::max(0, width - count));
+    }
 
 private:
     const Place corner_;  ///< the first one, m
@@ -184,13 +201,17 @@ inline TriangleSides::Lines TriangleSides::at(const double* x) const
     return {by_ * at, cy_ * at};
 }
 
-inline SeenTriangle::Sides TriangleSides::of(const Lines& lines, double y) const
+inline TriangleSides::Sides TriangleSides::of(const Lines& lines, std::span<const double> y) const
 {
-    const float from_corner = float(y - corner_[1]);
-    const Four ab = all(bx_ * from_corner) - lines.ab, ca = lines.ca - all(cx_ * from_corner), bc = area_ - ab - ca;
-    const Four low = least(least(ab, ca), bc);
-    const std::uint32_t bits = bits_of(low > rim_, low < -rim_), inside = bits & 15;
-    return {inside, ~(inside | bits >> 4) & 15};
+    std::uint64_t inside = 0, outside = 0;
+    for (std::size_t j = y.size(); j-- > 0;) {
+        const float from_corner = float(y[j] - corner_[1]);
+        const Four ab = all(bx_ * from_corner) - lines.ab, ca = lines.ca - all(cx_ * from_corner), bc = area_ - ab - ca,
+                   low = least(least(ab, ca), bc);
+        inside = inside << width | bits_of(low > rim_);
+        outside = outside << width | bits_of(low < -rim_);
+    }
+    return {inside, ~(inside | outside) & bits_between(0, int(y.size()) * width - 1)};
 }
 
 /// Four pairs of a vertical line and a triangle.

@@ -30,14 +30,12 @@ bool misses(const std::array<Vec3, 3>& corners, const Rect& rect)
 std::optional<SurfaceHit> uniform_hit(const Tile& tile, std::uint32_t triangle, const Rect& rect)
 {
     if (tile.piece(triangle).solid != 0) return std::nullopt;
-    const auto [a, b, c] = tile.corners(triangle);
-    // Computed heights of a triangle at -0 m may be 0 or -0.
-    if (a.z() != b.z() || a.z() != c.z() || (a.z() == 0 && std::signbit(a.z()))) return std::nullopt;
     const SeenTriangle seen(tile, triangle);
+    const TrianglePlane plane(seen);
+    if (!plane.is_level()) return std::nullopt;
     for (const double y : {rect.low_y, rect.high_y})
         for (const double x : {rect.low_x, rect.high_x})
             if (seen.sides_of(x, y).inside == 0) return std::nullopt;
-    const TrianglePlane plane(seen);
     return seen.hit_inside(plane, plane.height(rect.high_x, rect.high_y));
 }
 
