@@ -212,7 +212,7 @@ private:
     std::vector<SurfaceHit> hits_;  ///< of all columns of the block, as far as slots cannot hold them
     std::vector<ListedHit> listed_;
     std::vector<std::uint32_t> full_;   ///< the slots whose columns have hits in listed_
-    std::vector<std::uint64_t> order_;  ///< of a column's hits: their elements, and, in the lower half, their places
+    std::vector<std::uint64_t> order_;  ///< a column's hits: the element and, in the lower half, the index in hits_
     std::vector<SurfaceHit> ordered_;   ///< the hits of a column
     const Slot* last_ = nullptr;        ///< the last one that was completed
     std::uint32_t last_hit_ = none;     ///< its index was this one before

@@ -178,8 +178,8 @@ public:
     /// Returns the bits of the first lines of each row, 1 or more of them.
     static std::uint64_t first_lines(int count)
     {
-        constexpr std::uint64_t first_of_each_row = 0x1111111111111111;
-        return first_of_each_row * (15U >> std::max(0, width - count));
+        constexpr std::uint64_t row = (1U << width) - 1, first_of_each_row = ~std::uint64_t{0} / row;
+        return first_of_each_row * (row >> std::max(0, width - count));
     }
 
 private:
