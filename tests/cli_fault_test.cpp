@@ -309,7 +309,7 @@ TEST_CASE("every command refuses a damaged map and names the file")
     desk.write("map/map.yaml", "format: spawnfield-map/99" + yaml.substr(yaml.find('\n')));
     for (const std::string& query : queries)
         desk.check({query,
-                    "spawnfield: map/map.yaml: has format version 99, this program reads 2 to 8; bake the map again "
+                    "spawnfield: map/map.yaml: has format version 99, this program reads 2 to 9; bake the map again "
                     "or use a newer spawnfield"},
                    4);
 }

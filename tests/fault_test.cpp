@@ -382,14 +382,14 @@ TEST_CASE("a map folder that is cut short, altered, newer or not a map is refuse
     folder.write("map/map.yaml", bad);
     CHECK(read() == "@/map/map.yaml: differs from the hash in its last line: it was altered; bake the map again");
     bad = good;
-    bad.replace(0, bad.find('\n'), "format: spawnfield-map/9");
+    bad.replace(0, bad.find('\n'), "format: spawnfield-map/10");
     folder.write("map/map.yaml", bad);
     CHECK(read() ==
-          "@/map/map.yaml: has format version 9, this program reads 2 to 8; bake the map again or use a newer "
+          "@/map/map.yaml: has format version 10, this program reads 2 to 9; bake the map again or use a newer "
           "spawnfield");
     folder.write("map/map.yaml", "image: map.pgm\n");
     CHECK(read() ==
-          "@/map/map.yaml: is not a map.yaml of spawnfield (its first line is not `format: spawnfield-map/8`)");
+          "@/map/map.yaml: is not a map.yaml of spawnfield (its first line is not `format: spawnfield-map/9`)");
     fs::remove(map / "map.yaml");
     CHECK(read() == "@/map: is not a map: it has no map.yaml; make a map with `spawnfield bake SCENE -o MAP`");
     CHECK(complaint(folder, [&] { read_map(folder / "none"); }) == "@/none: does not exist; is the path right?");
@@ -472,7 +472,8 @@ TEST_CASE("input files give a result or a FileError wherever they are cut or alt
 TEST_CASE("a geometry file with invalid indices is refused, even if its checksums are right")
 {
     const TempFolder folder;
-    const Scene scene = load_parts(folder, "  - {name: a, label: terrain, plane: [1, 1]}\n  - {name: b, sphere: 1}\n");
+    const Scene scene = load_parts(
+        folder, "  - {name: a, label: terrain, plane: [1, 1]}\n  - {name: b, label: terrain, sphere: 1}\n");
     const auto complaint_of = [&](auto change) {
         const Geometry geometry(scene);
         Geometry::Impl changed;

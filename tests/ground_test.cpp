@@ -434,7 +434,7 @@ TEST_CASE("a map of format version 2 is read: it has no z limits, and its floors
     const std::size_t floors = yaml.find("# from the lowest up"), after = yaml.find("terrain:  #");
     REQUIRE(floors < after);
     yaml.erase(floors, after - floors);
-    yaml.replace(yaml.find("spawnfield-map/7"), 16, "spawnfield-map/2");
+    yaml.replace(yaml.find("spawnfield-map/9"), 16, "spawnfield-map/2");
     yaml.erase(yaml.rfind("hash: "));
     folder.write("map/map.yaml", yaml + "hash: \"" + checksum(yaml) + "\"\n");
     const Map map = read_map(folder / "map");

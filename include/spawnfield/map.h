@@ -11,13 +11,13 @@
 
 namespace spawnfield {
 
-/// Version 8 has an occupancy_origin; it is only written for maps that need one, others have version 7. Version 7
-/// stores the names of nodes and materials of meshes in geometry.bin, for rules of place. Version 6 stores a hash of
-/// each part there, for update_map(). Version 5 stores geometry.bin in small tiles under a tree; the tiles of an older
-/// map are converted when it is opened, which takes about 0.5 s for a million triangles. Version 4 stores less in
-/// bounds.bin: a tile whose cells are all the same only once, and an interval list that cells share only once. Version
-/// 3 added z_limits and floors. A map of version 2 has no z limits, and its floors are computed from terrain.tiff.
-inline constexpr int map_format_version = 8;
+/// Version 9 stores grids of heightmaps in geometry.bin. Version 8 has an occupancy_origin. Version 7 stores the names
+/// of nodes and materials of meshes in geometry.bin, for rules of place. Version 6 stores a hash of each part there,
+/// for update_map(). Version 5 stores geometry.bin in small tiles under a tree; the tiles of an older map are converted
+/// when it is opened, which takes about 0.5 s for a million triangles. Version 4 stores less in bounds.bin: a tile
+/// whose cells are all the same only once, and an interval list that cells share only once. Version 3 added z_limits
+/// and floors. A map of version 2 has no z limits, and its floors are computed from terrain.tiff.
+inline constexpr int map_format_version = 9;
 
 class MapFiles;    // of a map that was read: the files that are read later
 struct MapChange;  // of a changed map: what differs from the map before

@@ -159,9 +159,9 @@ EarlierState earlier_state(const fs::path& folder, const fs::path& scene_file, c
                 named_in_now = named_parts(now.geometry, globs, is_used);
     check_globs(now.geometry, globs, is_used);
     const bool has_hashes = old.geometry.impl().part_hashes.size() == old.geometry.parts().size();
-    if (!has_hashes || old.format_version != written_version(now))
+    if (!has_hashes || old.format_version != map_format_version)
         return {std::nullopt, "the old map has format " + std::to_string(old.format_version) +
-                                  ", and parts of format " + std::to_string(written_version(now)) +
+                                  ", and parts of format " + std::to_string(map_format_version) +
                                   " only can be compared"};
     if (!is_of_this_program(folder)) return {std::nullopt, "another version of the program baked the old map"};
     const Comparison parts = compare(old.geometry, now.geometry, named_in_old, named_in_now);

@@ -6,18 +6,17 @@
 #include <cstdint>
 #include <iterator>
 #include <utility>
-#include <vector>
 
 namespace spawnfield {
 
 /// Makes room for `size` items. If that is several megabytes, asks the system for pages of 2 MB, where it gives them
 /// only to those who ask: it then clears and maps 512 times fewer pages. Memory that is never used is still not taken
 /// from the system, except for the rest of the last page.
-template <class T>
-void reserve_large(std::vector<T>& list, std::size_t size)
+template <class List>  // std::vector or std::string
+void reserve_large(List& list, std::size_t size)
 {
     if (size <= list.capacity()) return;
-    std::vector<T> larger;
+    List larger;
     larger.reserve(size);
 #ifdef MADV_HUGEPAGE
     constexpr std::uintptr_t page = std::uintptr_t{1} << 21;  // bytes; that of x86-64

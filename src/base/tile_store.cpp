@@ -1,5 +1,6 @@
 #include "base/tile_store.h"
 
+#include "base/large_list.h"
 #include "base/parallel.h"
 
 #include <spawnfield/error.h>
@@ -110,7 +111,7 @@ void TileStoreBuilder::add(TileLevel level, std::vector<std::string> tiles, int 
     std::size_t size = bytes_.size();
     for (const std::string& tile : tiles) size += tile.size();
     if (bytes_.capacity() < size)
-        bytes_.reserve(size + size / 2);  // coarser levels will take about a third of this one
+        reserve_large(bytes_, size + size / 2);  // coarser levels will take about a third of this one
     for (std::size_t t = 0; t < tiles.size(); ++t) {
         level.tiles[t].offset = bytes_.size();
         level.tiles[t].size = tiles[t].size();

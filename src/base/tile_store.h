@@ -74,6 +74,13 @@ public:
         return keep(level, tile, bytes);
     }
 
+    /// Returns where a tile is that was opened before; nullptr if it was not.
+    const char* opened(std::size_t level, std::size_t tile) const
+    {
+        if (!opened_) return bytes_.view.data() + levels_[level].tiles[tile].offset;
+        return opened_->tiles[level][tile].load(std::memory_order_relaxed);
+    }
+
     /// Throws FileError: the checksums of the file are right, but its values contradict each other.
     [[noreturn]] void fail_inconsistent() const;
 

@@ -48,17 +48,6 @@ Column column_at(const Geometry& geometry, double x, double y)
     return out;
 }
 
-std::optional<Ground> ground_below(const ColumnView& column, double z)
-{
-    std::optional<Ground> best;
-    for (const Span& span : column.spans) {  // highest top first
-        if (span.top > z + touch_tolerance) continue;
-        if (best && best->height - span.top > touch_tolerance) break;
-        if (!best || (span.terrain && !best->terrain)) best = Ground{span.top, span.terrain, span.part};
-    }
-    return best;
-}
-
 std::optional<Ground> ground_below(const Column& column, double z) { return ground_below(ColumnView(column), z); }
 
 }  // namespace spawnfield

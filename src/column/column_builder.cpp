@@ -12,10 +12,16 @@ namespace {
 
 void add(const Interval& z, const SurfaceHit& hit, bool terrain, Column& out)
 {
-    if (hit.water)
+    if (hit.water) {
         out.water.push_back(z.top);
-    else
-        out.spans.push_back({z.bottom, z.top, hit.part, terrain, !hit.open});
+        return;
+    }
+    Span& span = out.spans.emplace_back();  // set in place: copying it would wait for all of its parts
+    span.bottom = z.bottom;
+    span.top = z.top;
+    span.terrain = terrain;
+    span.sealed = !hit.open;
+    span.part = hit.part;
 }
 
 }  // namespace

@@ -148,6 +148,10 @@ void Columns::set(const Geometry& geometry, std::span<const Vec2> places)
             const std::uint64_t lines = group.in(box);
             if (lines == 0) return;
             const Tile tile = impl.open(forest, tree, number);
+            if (tile.has_grid()) {
+                add_from_grid(tile, box, lines);
+                return;
+            }
             for_each_bit(lines, [&](std::uint32_t line) {
                 pair(tile, line, tile.near(lines_.at[line].x(), lines_.at[line].y()));
             });
@@ -178,11 +182,17 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
     for (std::size_t j = 0; j < y_.size(); ++j) y_[j] = grid.y_of(grid.first_row + int(j));
     const BlockIndex index(grid);
     const Rect area{x_[0], y_.front(), x_[std::size_t(grid.cols) - 1], y_.back()};
+    constexpr std::uint32_t columns_per_triangle = 2;  // with more of them, a look at each triangle takes less time
     geometry.impl().visit_whole_tiles(area, [&](const Tile& tile, const ElementBox& box) {
         ColumnRange range;
         if (!index.find({box.min[0], box.min[1]}, {box.max[0], box.max[1]}, range)) return;
         const auto columns = std::uint32_t(range.last_col + 1 - range.first_col) *
                              std::uint32_t(range.last_row + 1 - range.first_row);
+        if (tile.has_grid() && range.last_col - range.first_col < int(Lines::most) &&
+            columns <= columns_per_triangle * tile.elements()) {
+            add_grid(tile, box, surfaces, range);
+            return;
+        }
         if (columns <= tile.elements()) {  // most elements meet no column
             add_columns(tile, box, surfaces, range);
             return;
@@ -272,6 +282,65 @@ void Columns::add_columns(const Tile& tile, const ElementBox& box, Surfaces surf
     add_pairs(tile, box);
 }
 
+/// Does the same for a tile with a grid. There may be any number of columns, but at most Lines::most in a row.
+void Columns::add_grid(const Tile& tile, const ElementBox& box, Surfaces surfaces, const ColumnRange& range)
+{
+    const TriangleGrid grid = tile.grid();
+    const std::uint64_t elements = counted(tile, tile.alive, surfaces);
+    const auto cols = std::uint32_t(range.last_col + 1 - range.first_col);
+    std::array<TriangleGrid::Along, Lines::most> along_x;
+    std::array<std::uint64_t, Lines::most> near_x;
+    std::uint64_t known_x = 0;  // a bit for each number in near_x; few of them are needed
+    for (std::uint32_t i = 0; i < cols; ++i) along_x[i] = grid.along_x(x_[std::uint32_t(range.first_col) + i]);
+    std::uint32_t line = 0;
+    for (int row = range.first_row; row <= range.last_row; ++row) {
+        if (line + cols > Lines::most) {
+            add_pairs(tile, box);
+            line = 0;
+        }
+        const double y = y_[std::size_t(row)];
+        const TriangleGrid::Along along_y = grid.along_y(y);
+        const std::size_t first_slot = number(range.first_col, row);
+        for (std::uint32_t i = 0; i < cols; ++i, ++line) {
+            const double x = x_[std::uint32_t(range.first_col) + i];
+            lines_.at[line] = {x, y};
+            lines_.slot[line] = std::uint32_t(first_slot + i);
+            look_in_grid(tile, grid.find(along_x[i], along_y), elements, line, [&] {
+                if ((known_x >> i & 1) == 0) near_x[i] = tile.near_x(x);
+                known_x |= std::uint64_t{1} << i;
+                return near_x[i] & tile.near_y(y);
+            });
+        }
+    }
+    add_pairs(tile, box);
+}
+
+/// Adds the hits of some of the lines with the elements of a tile that has a grid.
+void Columns::add_from_grid(const Tile& tile, const ElementBox& box, std::uint64_t lines)
+{
+    const TriangleGrid grid = tile.grid();
+    for_each_bit(lines, [&](std::uint32_t line) {
+        const double x = lines_.at[line].x(), y = lines_.at[line].y();
+        look_in_grid(tile, grid.find(grid.along_x(x), grid.along_y(y)), tile.alive, line,
+                     [&] { return tile.near(x, y); });
+    });
+    add_pairs(tile, box);
+}
+
+/// Adds the hit of a line with the triangle that was found in the grid, and remembers others that it may meet. near()
+/// returns a bit for each element that is near the line.
+template <class Near>
+[[gnu::always_inline]] inline void Columns::look_in_grid(const Tile& tile, std::uint32_t found, std::uint64_t elements,
+                                                         std::uint32_t line, const Near& near)
+{
+    if (found < TriangleGrid::none && (elements >> found & 1) != 0) {
+        const SeenTriangle seen(tile, found);
+        add_inside(slots_[lines_.slot[line]], seen, TrianglePlane(seen), lines_.at[line].x(), lines_.at[line].y());
+    }
+    const std::uint64_t others = found == TriangleGrid::rim ? elements : elements & ~tile.grid().members();
+    if (others != 0) pair(tile, line, near() & others);
+}
+
 /// Remembers the triangles of a tile that may meet a line, and adds the hits of the line with primitives.
 inline void Columns::pair(const Tile& tile, std::uint32_t line, std::uint64_t elements)
 {
@@ -337,7 +406,7 @@ void Columns::add_pairs(const Tile& tile, const ElementBox& box)
 {
     const double height = plane.height(x, y);
     if (plane.filled)
-        list_new(slot) = seen.hit_inside(plane, height);
+        seen.set_hit_inside(plane, height, list_new(slot));
     else
         add_sheet(slot, seen, plane, height);
 }
@@ -381,15 +450,18 @@ inline void Columns::refresh(Slot& slot)
             return;
         }
     } else {
-        const Span span{z, z, plane.part, plane.terrain, !plane.open};
-        if (slot.has_span && slot.span == span) return;
         if (!slot.has_span) {
             slot.has_span = true;
-            slot.span = span;
+            Span& span = slot.span;  // set in place: copying it would wait for all of its parts
+            span.bottom = span.top = z;
+            span.terrain = plane.terrain;
+            span.sealed = !plane.open;
+            span.part = plane.part;
             return;
         }
+        if (slot.span == Span{z, z, plane.terrain, !plane.open, plane.part}) return;
     }
-    list_new(slot) = seen.hit_inside(plane, z);
+    seen.set_hit_inside(plane, z, list_new(slot));
 }
 
 /// Adds a hit to the list of a column, and returns it, to be set. So it need not be copied, which would wait for all of

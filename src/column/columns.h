@@ -24,7 +24,17 @@ struct ColumnView {
 };
 
 /// Does the same as ground_below for a Column.
-std::optional<Ground> ground_below(const ColumnView& column, double z);
+inline std::optional<Ground> ground_below(const ColumnView& column, double z)
+{
+    const Span* best = nullptr;
+    for (const Span& span : column.spans) {  // highest top first
+        if (span.top > z + touch_tolerance) continue;
+        if (best != nullptr && best->top - span.top > touch_tolerance) break;
+        if (best == nullptr || (span.terrain && !best->terrain)) best = &span;
+    }
+    if (best == nullptr) return std::nullopt;
+    return Ground{best->top, best->terrain, best->part};
+}
 
 /// Writes column_at(geometry, x, y) to `out`, and uses the memory of `out` again.
 void read_column(const Geometry& geometry, double x, double y, Column& out);
@@ -182,6 +192,11 @@ private:
     void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void add_triangle(const SeenTriangle& seen, const ColumnRange& range);
     void add_columns(const Tile& tile, const ElementBox& box, Surfaces surfaces, const ColumnRange& range);
+    void add_grid(const Tile& tile, const ElementBox& box, Surfaces surfaces, const ColumnRange& range);
+    void add_from_grid(const Tile& tile, const ElementBox& box, std::uint64_t lines);
+    template <class Near>
+    void look_in_grid(const Tile& tile, std::uint32_t found, std::uint64_t elements, std::uint32_t line,
+                      const Near& near);
     void pair(const Tile& tile, std::uint32_t line, std::uint64_t elements);
     void add_pairs(const Tile& tile, const ElementBox& box);
     void add_inside(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y);

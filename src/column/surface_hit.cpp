@@ -68,23 +68,6 @@ bool is_touched(const Vec3& a, const Vec3& b, const Vec3& c, double sign, double
 
 }  // namespace
 
-SurfaceHit SeenTriangle::hit_inside(const TrianglePlane& plane, double height) const
-{
-    return {.element = tile_.ids[triangle_],
-            .piece = piece().piece,
-            .part = plane.part,
-            .is_primitive = false,
-            .filled = plane.filled,
-            .open = plane.open,
-            .terrain = plane.terrain,
-            .water = plane.water,
-            .crosses = plane.filled,
-            .touches = !plane.filled,
-            .z = {height, height},
-            .crossing = height,
-            .piece_bottom = piece().bottom};
-}
-
 /// At a corner, this is exactly the corner's height, so that all triangles at that corner agree.
 double SeenTriangle::height_at_rim(const TrianglePlane& plane, double x, double y) const
 {

@@ -87,7 +87,30 @@ public:
     }
 
     /// Returns the hit of a line inside the triangle, which it meets at this height, m.
-    SurfaceHit hit_inside(const TrianglePlane& plane, double height) const;
+    SurfaceHit hit_inside(const TrianglePlane& plane, double height) const
+    {
+        SurfaceHit out;
+        set_hit_inside(plane, height, out);
+        return out;
+    }
+    /// Writes that hit part by part. Copying a whole hit that was just made would wait for all of its parts.
+    [[gnu::always_inline]] void set_hit_inside(const TrianglePlane& plane, double height, SurfaceHit& out) const
+    {
+        const TilePiece& from = piece();
+        out.element = tile_.ids[triangle_];
+        out.piece = from.piece;
+        out.part = plane.part;
+        out.is_primitive = false;
+        out.filled = plane.filled;
+        out.open = plane.open;
+        out.terrain = plane.terrain;
+        out.water = plane.water;
+        out.crosses = plane.filled;
+        out.touches = !plane.filled;
+        out.z = {height, height};
+        out.crossing = height;
+        out.piece_bottom = from.bottom;
+    }
     /// Returns the hit of a line at the rim, if it meets the triangle. A vertical triangle of a sheet is never met.
     std::optional<SurfaceHit> hit_at_rim(const TrianglePlane& plane, double x, double y) const;
     /// The same for a triangle of a sheet: returns only the height of the hit, m.

@@ -76,6 +76,17 @@ private:
         {
             return top < (z - tile.base) * inverse_quantum || top == 0;
         }
+        /// Begins to fetch some rows of cells from memory. GCC drops calls of functions that only prefetch (ipa-pure),
+        /// unless they are inlined.
+        [[gnu::always_inline]] void fetch(const CellRange& rows) const
+        {
+            constexpr std::uint32_t in_line = 64 / sizeof(std::uint16_t);
+            for (int r = rows.first; r <= rows.last; ++r)
+                for (std::uint32_t c = 0; c < BoundsTile::side; c += in_line)
+                    __builtin_prefetch(tile.tops + std::uint32_t(r) * BoundsTile::side + c);
+            if (rows.first <= rows.last && tile.bounds.marks != nullptr)
+                __builtin_prefetch(tile.bounds.marks + rows.first);
+        }
     };
     /// Some rows of cells of a tile, seen together.
     struct TileRows {
@@ -108,9 +119,10 @@ private:
         std::vector<CoverRow> rows;        ///< in the order of their numbers
         std::vector<CellRange> undecided;  ///< for each row: all other cells are proven free at the last pose
         std::array<OpenTile, tile_cols * tile_rows> tiles;
-        RowColumns columns;        ///< of the poses of a row
-        bool has_columns = false;  ///< `columns` are those of row_x_
-        TileRows last_rows;        ///< that were seen
+        RowColumns columns;                                       ///< of the poses of a row
+        bool has_columns = false;                                 ///< `columns` are those of row_x_
+        double last_y = std::numeric_limits<double>::infinity();  ///< of the last row of poses, m
+        TileRows last_rows;                                       ///< that were seen
     };
     struct Part {
         Footprint footprint;
@@ -137,6 +149,7 @@ private:
                                        double bottom, double top);
     void set_row(std::span<const double> x);
     const RowColumns& columns_of(const Part& part, Pass& pass) const;
+    CellRange next_rows(const Part& part, Pass& pass, double y, const CellRange& rows) const;
     void look_around(const Part& part, Pass& pass, double y, std::span<const double> z,
                      std::span<Surroundings> out) const;
     static Pass& second_pass(Part& part);

@@ -4,6 +4,7 @@
 #include "scene/elements.h"
 
 #include <cmath>
+#include <iterator>
 
 namespace spawnfield {
 namespace {
@@ -11,14 +12,15 @@ namespace {
 /// Sorts elements by size, so that a large one does not widen the tile of many small ones. The first group has all that
 /// are shorter than a tile of average elements; the limit of each further group is four times that of the one before.
 /// Empty groups are left out.
-std::vector<std::vector<std::uint32_t>> groups_by_size(const std::vector<ElementBox>& boxes, const Bounds& bounds)
+std::vector<std::vector<std::uint32_t>> groups_by_size(const std::vector<ElementBox>& boxes, const Bounds& bounds,
+                                                       std::span<const std::uint32_t> elements)
 {
     constexpr double factor = 4;
     const Vec3 extent = bounds.max - bounds.min;
     const double tile = std::sqrt(std::max(extent.x(), 1e-3) * std::max(extent.y(), 1e-3) * TileBoxes::most /
-                                  double(boxes.size()));
+                                  double(elements.size()));
     std::vector<std::vector<std::uint32_t>> groups(1);
-    for (std::uint32_t element = 0; element < boxes.size(); ++element) {
+    for (const std::uint32_t element : elements) {
         const ElementBox& box = boxes[element];
         const double size = std::max(double(box.max[0]) - box.min[0], double(box.max[1]) - box.min[1]);
         std::size_t group = 0;
@@ -28,6 +30,22 @@ std::vector<std::vector<std::uint32_t>> groups_by_size(const std::vector<Element
     }
     std::erase_if(groups, [](const auto& group) { return group.empty(); });
     return groups;
+}
+
+/// Returns the elements that share a tree. Terrain is apart from everything else, so that tiles of a heightmap are
+/// grids (triangle_grid.h) under houses and trees, too.
+std::vector<std::vector<std::uint32_t>> groups_of(const Scene& scene, const std::vector<ElementBox>& boxes)
+{
+    std::array<std::vector<std::uint32_t>, 2> terrain_and_others;
+    for (std::uint32_t element = 0; element < boxes.size(); ++element)
+        terrain_and_others[element_label(scene, element) == Label::Terrain ? 0 : 1].push_back(element);
+    std::vector<std::vector<std::uint32_t>> out;
+    for (const std::vector<std::uint32_t>& elements : terrain_and_others) {
+        if (elements.empty()) continue;
+        auto groups = groups_by_size(boxes, scene.bounds(), elements);
+        std::move(groups.begin(), groups.end(), std::back_inserter(out));
+    }
+    return out;
 }
 
 ElementBox box_around(const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements)
@@ -82,7 +100,7 @@ std::shared_ptr<const Forest> forest_of(const Scene& scene, const ElementNumbers
     parallel_for(elements, threads, {},
                  [&](std::size_t e) { boxes[e] = widened(element_bounds(scene, std::uint32_t(e))); });
     TileStoreBuilder store(0);
-    for (std::vector<std::uint32_t>& group : groups_by_size(boxes, scene.bounds())) {
+    for (std::vector<std::uint32_t>& group : groups_of(scene, boxes)) {
         const std::vector<std::uint32_t> order = packed_order(boxes, std::move(group), threads);
         std::vector<std::string> tiles((order.size() + TileBoxes::most - 1) / TileBoxes::most);
         std::vector<ElementBox> around(tiles.size());

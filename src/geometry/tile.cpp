@@ -78,12 +78,13 @@ public:
     std::string build()
     {
         number_corners();
+        const GridBytes grid = triangle_grid_of(triangles_from_above());
         TileHead head{.scales = {},
                       .vertices = std::uint8_t(vertices_.size()),
                       .triangles = std::uint8_t(triangles_),
                       .primitives = std::uint8_t(elements_.size() - triangles_),
                       .pieces = std::uint8_t(pieces_.size()),
-                      .unused = 0};
+                      .grid = grid.size};
         for (std::size_t axis = 0; axis < 3; ++axis) head.scales[axis] = scale_along(axis);
         TileBoxes numbers{};
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -94,6 +95,7 @@ public:
         out_.reserve(tile_size(head));
         put(head);
         put(numbers);
+        out_ += grid.bytes;
         for (const std::uint32_t vertex : vertices_) put(scene_.vertices[vertex]);
         for (std::size_t e = triangles_; e < elements_.size(); ++e) put(packed_primitive(elements_[e]));
         for (const PieceGroup& piece : pieces_) put(packed_piece(piece));
@@ -151,6 +153,16 @@ private:
             const auto value = std::uint32_t(both >> 8);
             if (out.empty() || out.back() != value) out.push_back(value);
             numbers[both & 255] = std::uint8_t(out.size() - 1);
+        }
+        return out;
+    }
+
+    std::vector<TriangleFromAbove> triangles_from_above() const
+    {
+        std::vector<TriangleFromAbove> out;
+        for (std::size_t e = 0; e < triangles_; ++e) {
+            const auto [a, b, c] = corners_of(scene_, elements_[e]);
+            out.push_back({{{a.x(), a.y()}, {b.x(), b.y()}, {c.x(), c.y()}}});
         }
         return out;
     }
@@ -223,16 +235,17 @@ private:
 
 std::uint64_t tile_size(const TileHead& head)
 {
-    return sizeof(TileHead) + sizeof(TileBoxes) + head.vertices * sizeof(Vec3) +
+    return sizeof(TileHead) + sizeof(TileBoxes) + head.grid.bytes() + head.vertices * sizeof(Vec3) +
            head.primitives * (sizeof(TilePrimitive) + 4) + head.pieces * sizeof(TilePiece) +
            head.triangles * (sizeof(TileTriangle) + 4);
 }
 
 Tile::Tile(std::string_view bytes)
     : head(reinterpret_cast<const TileHead*>(bytes.data())),
-      boxes(reinterpret_cast<const TileBoxes*>(bytes.data() + sizeof(TileHead)))
+      boxes(reinterpret_cast<const TileBoxes*>(bytes.data() + sizeof(TileHead))),
+      grid_bytes(bytes.data() + sizeof(TileHead) + sizeof(TileBoxes))
 {
-    const char* next = bytes.data() + sizeof(TileHead) + sizeof(TileBoxes);
+    const char* next = grid_bytes + head->grid.bytes();
     vertices = take<Vec3>(next, head->vertices);
     primitives = take<TilePrimitive>(next, head->primitives);
     pieces = take<TilePiece>(next, head->pieces);
@@ -275,6 +288,7 @@ bool is_consistent_tile(std::string_view bytes, const TileLimits& limits)
     if (std::size_t{head.triangles} + head.primitives > TileBoxes::most) return false;
     const Tile tile(bytes);
     if (!has_consistent_triangles(tile)) return false;
+    if (tile.has_grid() && !is_consistent_grid(head.grid, tile.grid(), head.triangles)) return false;
     for (const TilePiece& p : tile.pieces)
         if (p.part >= limits.parts || p.group > limits.groups) return false;
     for (const TilePrimitive& p : tile.primitives)

@@ -4,6 +4,7 @@
 #include "base/four.h"
 #include "base/rect.h"
 #include "base/rounding.h"
+#include "geometry/triangle_grid.h"
 
 #include <spawnfield/scene.h>
 #include <spawnfield/shape.h>
@@ -104,7 +105,7 @@ struct TileScale {
 struct TileHead {
     std::array<TileScale, 3> scales;  ///< of x, y, z
     std::uint8_t vertices, triangles, primitives, pieces;
-    std::uint32_t unused;
+    TriangleGridSize grid;
 };
 static_assert(sizeof(TileHead) == 32);
 
@@ -131,6 +132,7 @@ struct TileLimits {
 struct Tile {
     const TileHead* head;
     const TileBoxes* boxes;
+    const char* grid_bytes;  ///< behind the boxes
     std::span<const Vec3> vertices;
     std::span<const TilePrimitive> primitives;
     std::span<const TilePiece> pieces;
@@ -143,6 +145,9 @@ struct Tile {
     explicit Tile(std::string_view bytes);
 
     std::uint32_t elements() const { return std::uint32_t(head->triangles) + head->primitives; }
+    bool has_grid() const { return head->grid.exists(); }
+    /// Returns the grid, which the tile must have.
+    TriangleGrid grid() const { return {head->grid, grid_bytes}; }
     bool is_triangle(std::uint32_t element) const { return element < head->triangles; }
     /// Returns a bit for each element that is a triangle.
     std::uint64_t are_triangles() const { return bits_between(0, int(head->triangles) - 1); }

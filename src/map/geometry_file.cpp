@@ -9,7 +9,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr TiledFormat geometry_format{"SPAWNGEO", 5, 2};
+constexpr TiledFormat geometry_format{"SPAWNGEO", 6, 2};
 
 std::string written_head(const Geometry::Impl& geometry)
 {

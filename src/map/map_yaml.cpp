@@ -210,17 +210,11 @@ int version_of(const fs::path& file, const std::string& text)
 
 }  // namespace
 
-int written_version(const Map& map)
-{
-    constexpr int without_occupancy_origin = 7;
-    return map.occupancy_origin.isZero(0) ? without_occupancy_origin : map_format_version;
-}
-
 std::string write_map_yaml(const fs::path& folder, const Map& map, const TerrainMap& terrain,
                            std::pair<double, double> heightmap_range, const std::vector<ListedFile>& written)
 {
     const GridFrame& frame = terrain.frame;
-    std::string text = "format: " + format_prefix + std::to_string(written_version(map)) + "\n";
+    std::string text = "format: " + format_prefix + std::to_string(map_format_version) + "\n";
     text += "name: " + quoted(map.name) + "\n";
     text += program_lines();
     text += "scene: {file: " + quoted(map.scene_file) + ", xxh64: \"" + map.scene_hash + "\"}\n";

@@ -6,9 +6,6 @@
 
 namespace spawnfield {
 
-/// Returns the version of the format in which a map is written.
-int written_version(const Map& map);
-
 /// Writes map.yaml to a folder that already contains the map's other files, and lists their sizes and checksums in it.
 /// `written` has entries that are known already; the other files are read. Returns the map's hash.
 std::string write_map_yaml(const std::filesystem::path& folder, const Map& map, const TerrainMap& terrain,

@@ -319,7 +319,7 @@ void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const C
             continue;
         }
         const double terrain = ground[i].terrain;
-        const Span surface{terrain, terrain, 0, true, true};
+        const Span surface{.bottom = terrain, .top = terrain, .terrain = true};
         if (mask_->is_pierced({&surface, 1}, z_[i])) proofs_[i] = Proof::Blocked;
         judge_one(i, ColumnView({&surface, 1}, {}, {}));
     }
