@@ -1,11 +1,13 @@
 #include "geometry/triangle_grid.h"
 #include "catch.h"
 #include "column/columns.h"
-#include "query/draw.h"
+#include "scene/elements.h"
 #include "worlds/hand_scene.h"
 #include "worlds/random.h"
 
 #include <spawnfield/column.h>
+
+#include <cstddef>
 
 using namespace spawnfield;
 
@@ -313,4 +315,31 @@ TEST_CASE("a grid whose numbers do not fit its tile is refused")
         grid.size.cols = TriangleGridSize::most + 1;
         grid.bytes.resize(grid.size.bytes(), char(TriangleGrid::none));
     }));
+}
+
+TEST_CASE("a tile with a damaged grid is refused")
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Terrain, hand::relief(5, 5, [](double, double) { return 0.0; }));
+    std::vector<ElementBox> boxes;
+    std::vector<std::uint32_t> elements(element_count(scene));
+    for (std::uint32_t e = 0; e < elements.size(); ++e) {
+        elements[e] = e;
+        boxes.push_back(widened(element_bounds(scene, e)));
+    }
+    const std::string good = tile_of(scene, boxes, elements, {});
+    REQUIRE(Tile(good).has_grid());
+    const std::size_t first = sizeof(TileHead) + sizeof(TileBoxes) + sizeof(TriangleGridHead);
+    const TileLimits limits{scene.parts.size(), scene.face_groups.size()};
+    const auto is_accepted = [&](std::size_t place, char value) {
+        std::string bytes = good;
+        bytes[place] = value;
+        return is_consistent_tile(bytes, limits);
+    };
+    const std::size_t cols = offsetof(TileHead, grid);
+    CHECK(is_accepted(first, 49));
+    CHECK_FALSE(is_accepted(first, 50));  // there are 50 triangles
+    CHECK(is_accepted(cols, 5));
+    CHECK_FALSE(is_accepted(cols, 0));  // the tile's bytes are more than its head says
+    CHECK_FALSE(is_accepted(cols, 17));
 }

@@ -84,8 +84,10 @@ public:
     {
         const float above = y.part - x.part;  // the diagonal
         const std::uint32_t half = 2 * (y.cell * size_.cols + x.cell) + std::uint32_t(above > 0);
-        const std::uint32_t found = x.outside | y.outside ? none : halves_[half];
-        return x.at_rim | y.at_rim | !(std::abs(above) > margin) ? rim : found;
+        const bool is_outside = x.outside | y.outside;  // `|`: no branches, because they cannot be foretold
+        const bool is_at_rim = x.at_rim | y.at_rim | !(std::abs(above) > margin);
+        const std::uint32_t found = is_outside ? none : halves_[half];
+        return is_at_rim ? rim : found;
     }
 
 private:
