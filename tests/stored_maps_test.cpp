@@ -40,7 +40,9 @@ TEST_CASE("stored maps of all format versions that are read give the verdicts of
         const StoredMap stored(version);
         CHECK(
             bytes_of(stored / "map/map.yaml").starts_with("format: spawnfield-map/" + std::to_string(version) + "\n"));
-        CHECK(run_program(stored, "info --verify map").status == 0);
+        const ProgramRun info = run_program(stored, "info --verify map");
+        CHECK(info.status == 0);
+        CHECK_THAT(info.out, Contains("; voxels of 1.0 m; format " + std::to_string(version) + "\n"));
         const ProgramRun check = run_program(stored, "check map --robot box:0.1,0.1,0.1 --poses " + poses);
         const std::string notice = "notice: map has format " + std::to_string(version) + ", which is slow to open;";
         CHECK(check.err.starts_with(notice) == (version < 5));

@@ -289,6 +289,9 @@ TEST_CASE("bake --update bakes in full, with a notice, when the raster changes o
         fs::copy(stored + "format-" + name, yard / "old",
                  fs::copy_options::recursive | fs::copy_options::overwrite_existing);
     const std::string options = "--resolution 4 --occupancy-resolution 1";
+    const ProgramRun other = run_program(yard, "bake scene.yaml -o old --update '*'");
+    CHECK(other.status == 2);
+    CHECK_THAT(other.err, Contains("old was baked with a resolution of 4 m, not with 0.1 m; give --resolution as for"));
     const ProgramRun run = run_program(yard, "bake scene.yaml -o old --update '*' " + options);
     CHECK_THAT(run.err, Contains("because the old map has format 5, and parts of format 9 only can be compared"));
     REQUIRE(run_program(yard, "bake scene.yaml -o new " + options).status == 0);

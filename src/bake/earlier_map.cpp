@@ -158,6 +158,7 @@ EarlierState earlier_state(const fs::path& folder, const fs::path& scene_file, c
     const Marks named_in_old = named_parts(old.geometry, globs, is_used),
                 named_in_now = named_parts(now.geometry, globs, is_used);
     check_globs(now.geometry, globs, is_used);
+    check_options(folder, old, now, options);
     const bool has_hashes = old.geometry.impl().part_hashes.size() == old.geometry.parts().size();
     if (!has_hashes || old.format_version != map_format_version)
         return {std::nullopt, "the old map has format " + std::to_string(old.format_version) +
@@ -171,7 +172,6 @@ EarlierState earlier_state(const fs::path& folder, const fs::path& scene_file, c
                             ", and --update does not name " + (parts.wrong.size() == 1 ? "it: " : "them: ") +
                             first_of(parts.wrong, 8) +
                             "; name all changed parts (--update '*' finds them), or bake in full (without --update)");
-    check_options(folder, old, now, options);
     if (old.bounds.min != now.bounds.min || old.bounds.max != now.bounds.max)
         return {std::nullopt, "the bounds changed from " + to_string(old.bounds) + " to " + to_string(now.bounds)};
     if (old.geometry.impl().has_filled_meshes != now.geometry.impl().has_filled_meshes)

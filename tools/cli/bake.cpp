@@ -69,8 +69,9 @@ void add_bake(CLI::App& app, ChosenCommand& chosen)
     command
         .add_option(
             "scene", args->scene,
-            "scene.yaml, a Gazebo world or model (.world, .sdf, a model's folder), a mesh (any format of assimp), "
-            "an OctoMap (.bt), an elevation model (.tif, .asc, .png, .raw) or a 2D map (map.yaml of nav2 or ROS)")
+            "scene.yaml, a Gazebo world or model (.world, .sdf, a model's folder), a mesh (3ds, 3mf, dae, fbx, glb, "
+            "gltf, obj, off, ply or stl; others with --any-mesh), an OctoMap (.bt), an elevation model (.tif, .asc, "
+            ".png, .raw) or a 2D map (map.yaml of nav2 or ROS)")
         ->required();
     command.add_option("--out,-o", args->out, "Map folder to write; an older map there is replaced")
         ->required()

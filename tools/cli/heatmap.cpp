@@ -291,8 +291,10 @@ void add_heatmap(CLI::App& app, const std::string& command_line, ChosenCommand& 
                            " (default: that of the spawns, or 0)");
     start_group(command, help_group::picture);
     add_heatmap_names(command, args->marks);
-    command.add_option("--step", args->step,
-                       "Distance between columns, m (default: 300 columns along the longer side)");
+    command.add_option(
+        "--step", args->step,
+        "Distance between columns, m (default: 300 columns along the longer side, but not less than the cells of "
+        "the map)");
     command
         .add_option("--size", args->size,
                     "Longer side of the picture, pixels (default 1000; texts are legible from about 500 on)")

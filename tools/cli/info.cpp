@@ -191,6 +191,7 @@ Json map_json(const Map& map, std::span<const Part> parts, bool verified, std::s
 {
     Json out = {{"kind", "map"},
                 {"name", map.name},
+                {"format", map.format_version},
                 {"bounds", json_of(map.bounds)},
                 {"resolution", map.resolution},
                 {"occupancy_resolution", map.occupancy_resolution},
@@ -481,7 +482,8 @@ std::string map_lines(const Json& map, std::span<const Part> parts)
     std::string out = "map " + map["name"].get<std::string>() + " (from " + map["scene"]["file"].get<std::string>() +
                       ", hash " + map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
     out += "  terrain cells of " + map["resolution"].dump() + " m, " + counted(map["layers"], "layer") +
-           "; voxels of " + map["occupancy_resolution"].dump() + " m\n" + z_limits_line(map) + origin_line(map);
+           "; voxels of " + map["occupancy_resolution"].dump() + " m; format " + map["format"].dump() + "\n" +
+           z_limits_line(map) + origin_line(map);
     out += floor_lines(map);
     if (map.contains("reach")) out += island_lines(map["reach"]);
     out += scene_lines(map, parts);

@@ -218,8 +218,10 @@ void add_review(CLI::App& app, const std::string& command_line, ChosenCommand& c
         "--pairs", args->pairs,
         "CSV file of pairs of a start and a goal to show with their paths, from `sample --pairs`; may be "
         "given several times (- for standard input)");
-    command.add_option("--raster", args->step,
-                       "Distance between the columns of the verdicts, m (default: 500 columns along the longer side)");
+    command.add_option(
+        "--raster", args->step,
+        "Distance between the columns of the verdicts, m (default: 500 columns along the longer side, but not "
+        "less than the cells of the map)");
     command.add_option("--yaw", args->yaw, "Yaw of the verdicts: " + yaw_help + " (default 0)");
     command
         .add_option("--headings", args->headings,
