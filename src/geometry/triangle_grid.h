@@ -50,8 +50,8 @@ public:
 
     /// How far corners of triangles may be from those of cells, in cells.
     static constexpr double tolerance = 0.001;
-    /// How far a place must be from edges for an answer, in cells. What is left without the tolerance is at least 3 um
-    /// (least_cell), far more than touch_tolerance and all rounding.
+    /// How far a place must be from edges for an answer, in cells. Corners beyond their cells take up to 0.002 of it at
+    /// a diagonal. What is left is at least 2 um (least_cell), far more than touch_tolerance and all rounding.
     static constexpr float margin = 0.004F;
     static constexpr double least_cell = 0.001;  ///< m
 
