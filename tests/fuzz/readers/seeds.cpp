@@ -275,11 +275,11 @@ void add_octomaps(Collector& out)
 void add_map_files(Collector& out, const fs::path& source)
 {
     const fs::path maps = source / "tests/data/maps";
-    for (const char* const version : {"format-3", "format-5", "format-6", "format-7"})
+    for (const char* const version : {"format-3", "format-5", "format-6", "format-7", "format-9"})
         out.add("tiles", ".geometry", read_file(maps / version / "geometry.bin"));
     for (const char* const version : {"format-3", "format-4"})
         out.add("tiles", ".bounds", read_file(maps / version / "bounds.bin"));
-    out.add("maps", ".yaml", read_file(maps / "format-7/map.yaml"));
+    out.add("maps", ".yaml", read_file(maps / "format-9/map.yaml"));
     out.add("maps", ".tiff", read_file(maps / "format-3/terrain.tiff"));
     out.add("maps", ".bt", read_file(maps / "format-3/occupancy.bt"));
     out.add("apart_octomaps", ".bt", read_file(maps / "format-3/occupancy.bt"));
