@@ -102,6 +102,8 @@ TEST_CASE("a map in the coordinates of a survey has voxels of the usual size, an
     CHECK(bake.status == 0);
     CHECK(bake.err.find("notice") == std::string::npos);
     const Map home = read_map(folder / "home"), far = read_map(folder / "far");
+    CHECK(bytes_of(folder / "home/map.yaml").starts_with("format: spawnfield-map/9\n"));
+    CHECK(bytes_of(folder / "far/map.yaml").starts_with("format: spawnfield-map/9\n"));
     CHECK(far.occupancy_resolution == 0.25);
     CHECK(home.occupancy_origin == Vec3(0, 0, 0));
     CHECK((far.occupancy_origin - Vec3(x, y, 0)).norm() < 100);

@@ -169,7 +169,7 @@ int tiles_with_grids(const Geometry& geometry)
 
 }  // namespace
 
-TEST_CASE("a grid finds the triangle of a relief that contains a place, or says that it cannot tell")
+TEST_CASE("a grid finds the triangle of a relief that contains a place, or says that the place is near an edge")
 {
     Random random(1);
     Answers all, on_edges;

@@ -1,7 +1,7 @@
 #include "geometry/triangle_grid.h"
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
 #include <limits>
 #include <optional>
 

@@ -1,13 +1,11 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
-#include <string_view>
 
 namespace spawnfield {
 
@@ -18,8 +16,7 @@ namespace spawnfield {
 struct TriangleGridSize {
     static constexpr std::uint8_t most = 16;  ///< columns or rows
     std::uint8_t cols, rows;
-    std::uint8_t
-        is_rising;  ///< whether the diagonal of each cell joins its corners at the smallest and largest x and y
+    std::uint8_t is_rising;  ///< 1: each diagonal joins the corners at the smallest and largest x and y; 0: the others
     std::uint8_t unused;
 
     bool exists() const { return cols > 0; }
@@ -45,8 +42,7 @@ inline std::size_t TriangleGridSize::bytes() const
 class TriangleGrid {
 public:
     static constexpr std::uint32_t none = 64;  ///< in place of a triangle that is not in the grid
-    static constexpr std::uint32_t rim =
-        65;  ///< so near to an edge of a cell or to a diagonal that the grid cannot tell
+    static constexpr std::uint32_t rim = 65;   ///< within `margin` of an edge or diagonal: compare all triangles
 
     /// How far corners of triangles may be from those of cells, in cells.
     static constexpr double tolerance = 0.001;
