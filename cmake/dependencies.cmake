@@ -30,5 +30,5 @@ pkg_check_modules(ccd REQUIRED IMPORTED_TARGET ccd)
 
 set(SPAWNFIELD_PRIVATE_LIBRARIES
   octomap octomath yaml-cpp tinyxml2::tinyxml2 nlohmann_json::nlohmann_json meshoptimizer::meshoptimizer PNG::PNG
-  TIFF::TIFF ZLIB::ZLIB TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash PkgConfig::deflate
+  ZLIB::ZLIB TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash PkgConfig::deflate
   Threads::Threads)

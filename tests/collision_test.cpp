@@ -125,6 +125,17 @@ TEST_CASE("a robot around a small solid collides with it")
     CHECK(is_free(scene, "box:2,2,2@0,0,0", {1.06, 0, 0}));
 }
 
+TEST_CASE("a checker is the same whether FCL was loaded before or is just being loaded")
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Obstacle, hand::box({0.1, 0.1, 0.1}));
+    for (const int threads : {1, 2, 8}) {
+        preload_collisions(threads);
+        CHECK_FALSE(is_free(scene, "box:2,2,2@0,0,0", {1.04, 0, 0}));
+        CHECK(is_free(scene, "box:2,2,2@0,0,0", {1.06, 0, 0}));
+    }
+}
+
 TEST_CASE("each convex part of a robot counts, and the space between them is free")
 {
     Scene scene;

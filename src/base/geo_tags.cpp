@@ -1,6 +1,6 @@
 #include "base/geo_tags.h"
 
-#include <tiffio.h>
+#include "base/tiff.h"
 
 #include <iterator>
 
@@ -27,12 +27,12 @@ void extend_tags(TIFF* tiff)
                                            text(geo_ascii_params, names[5]),
                                            text(gdal_metadata, names[6]),
                                            text(gdal_no_data, names[7])};
-    TIFFMergeFieldInfo(tiff, fields, std::uint32_t(std::size(fields)));
+    libtiff().merge_field_info(tiff, fields, std::uint32_t(std::size(fields)));
     if (parent_extender != nullptr) parent_extender(tiff);
 }
 
 }  // namespace
 
-void register_geo_tags() { parent_extender = TIFFSetTagExtender(extend_tags); }
+void register_geo_tags() { parent_extender = libtiff().set_tag_extender(extend_tags); }
 
 }  // namespace spawnfield

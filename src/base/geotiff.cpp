@@ -33,21 +33,21 @@ std::vector<T> array_of(TIFF* tiff, std::uint32_t tag)
 {
     std::uint32_t count = 0;
     const T* values = nullptr;
-    if (TIFFGetField(tiff, tag, &count, &values) != 1 || values == nullptr) return {};
+    if (libtiff().get_field(tiff, tag, &count, &values) != 1 || values == nullptr) return {};
     return {values, values + count};
 }
 
 std::string text_of(TIFF* tiff, std::uint32_t tag)
 {
     const char* text = nullptr;
-    return TIFFGetField(tiff, tag, &text) == 1 && text != nullptr ? text : "";
+    return libtiff().get_field(tiff, tag, &text) == 1 && text != nullptr ? text : "";
 }
 
 bool second_page_is_mask(TIFF* tiff)
 {
     std::uint32_t kind = 0;
-    return TIFFReadDirectory(tiff) == 1 && TIFFGetFieldDefaulted(tiff, TIFFTAG_SUBFILETYPE, &kind) == 1 &&
-           (kind & FILETYPE_MASK) != 0;
+    return libtiff().read_directory(tiff) == 1 &&
+           libtiff().get_field_defaulted(tiff, TIFFTAG_SUBFILETYPE, &kind) == 1 && (kind & FILETYPE_MASK) != 0;
 }
 
 /// The GeoKeyDirectory. It starts with four numbers; the fourth is the number of keys. Then come four numbers for each

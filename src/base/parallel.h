@@ -21,6 +21,24 @@ namespace spawnfield {
 /// Returns how many threads are meant; 0: all cores.
 inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info::default_concurrency(); }
 
+/// Returns how many threads a loop uses that may use `threads` (0: all cores): not more than TBB may use in this
+/// process.
+inline int allowed_threads(int threads)
+{
+    const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    return std::min(thread_count(threads), int(allowed));
+}
+
+/// Begins to call work() on one of the threads that parallel_for uses, and returns at once; does nothing if there is to
+/// be only one thread. work() must not throw. The thread runs on while the caller goes on, so it has most likely got a
+/// core of its own when the first parallel_for needs it: Linux may start a thread on the core of the one that made it,
+/// and move it only after some milliseconds.
+template <class Work>
+void run_aside(int threads, const Work& work)
+{
+    if (const int count = allowed_threads(threads); count > 1) tbb::task_arena(count).enqueue(work);
+}
+
 /// A value for each thread that asks for one, made when the thread asks first. Any thread may call local().
 template <class T>
 using PerThread = tbb::enumerable_thread_specific<T>;
@@ -54,8 +72,7 @@ void parallel_for(std::size_t count, int threads, const Progress& progress, cons
             if (const std::unique_lock lock(reporting, std::try_to_lock); lock) progress(double(now) / double(count));
         }
     };
-    const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    tbb::task_arena arena(std::min(thread_count(threads), int(allowed)));
+    tbb::task_arena arena(allowed_threads(threads));
     arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), run); });
 }
 

@@ -22,16 +22,17 @@ struct Layout {
 Layout layout(TIFF* tiff)
 {
     Layout found;
-    TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &found.rows);
-    TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &found.cols);
-    TIFFGetField(tiff, TIFFTAG_TILELENGTH, &found.tile_rows);
-    TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &found.tile_cols);
-    TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &found.bits);
-    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &found.format);
-    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &found.channels);
-    TIFFGetFieldDefaulted(tiff, TIFFTAG_ORIENTATION, &found.orientation);
-    TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &found.compression);
-    if (TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &found.photometric) != 1) found.photometric = PHOTOMETRIC_MINISBLACK;
+    libtiff().get_field(tiff, TIFFTAG_IMAGELENGTH, &found.rows);
+    libtiff().get_field(tiff, TIFFTAG_IMAGEWIDTH, &found.cols);
+    libtiff().get_field(tiff, TIFFTAG_TILELENGTH, &found.tile_rows);
+    libtiff().get_field(tiff, TIFFTAG_TILEWIDTH, &found.tile_cols);
+    libtiff().get_field_defaulted(tiff, TIFFTAG_BITSPERSAMPLE, &found.bits);
+    libtiff().get_field_defaulted(tiff, TIFFTAG_SAMPLEFORMAT, &found.format);
+    libtiff().get_field_defaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &found.channels);
+    libtiff().get_field_defaulted(tiff, TIFFTAG_ORIENTATION, &found.orientation);
+    libtiff().get_field_defaulted(tiff, TIFFTAG_COMPRESSION, &found.compression);
+    if (libtiff().get_field(tiff, TIFFTAG_PHOTOMETRIC, &found.photometric) != 1)
+        found.photometric = PHOTOMETRIC_MINISBLACK;
     return found;
 }
 
@@ -66,7 +67,7 @@ void check(const Layout& l, const std::string& file, std::uint64_t most)
     if (std::max({std::uint64_t(l.rows), std::uint64_t(l.cols), std::uint64_t(l.rows) * l.cols}) > most)
         throw FileError(file, "has " + std::to_string(l.cols) + " x " + std::to_string(l.rows) +
                                   " pixels, needs at most " + std::to_string(most));
-    if (!TIFFIsCODECConfigured(l.compression))
+    if (!libtiff().is_codec_configured(l.compression))
         throw FileError(file, "is compressed with a scheme that libtiff cannot decode here (" +
                                   std::to_string(l.compression) + "); save it with deflate compression");
 }
@@ -94,9 +95,9 @@ double value(const Layout& l, const std::byte* bytes)
 /// Adds the pixels of all rows, row after row. Returns false if they cannot be decoded.
 bool read_lines(TIFF* tiff, const Layout& l, std::vector<double>& pixels)
 {
-    const auto line = std::make_unique_for_overwrite<std::byte[]>(std::size_t(TIFFScanlineSize(tiff)));
+    const auto line = std::make_unique_for_overwrite<std::byte[]>(std::size_t(libtiff().scanline_size(tiff)));
     for (std::uint32_t row = 0; row < l.rows; ++row) {
-        if (TIFFReadScanline(tiff, line.get(), row) != 1) return false;
+        if (libtiff().read_scanline(tiff, line.get(), row, 0) != 1) return false;
         for (std::size_t col = 0; col < l.cols; ++col) pixels.push_back(value(l, line.get() + col * l.pixel_bytes()));
     }
     return true;
@@ -104,12 +105,12 @@ bool read_lines(TIFF* tiff, const Layout& l, std::vector<double>& pixels)
 
 bool read_tiles(TIFF* tiff, const Layout& l, std::vector<double>& pixels)
 {
-    const auto tile = std::make_unique_for_overwrite<std::byte[]>(std::size_t(TIFFTileSize(tiff)));
+    const auto tile = std::make_unique_for_overwrite<std::byte[]>(std::size_t(libtiff().tile_size(tiff)));
     for (std::uint32_t top = 0; top < l.rows; top += l.tile_rows) {
         const std::uint32_t rows = std::min(l.tile_rows, l.rows - top);
         pixels.resize(std::size_t(top + rows) * l.cols);
         for (std::uint32_t left = 0; left < l.cols; left += l.tile_cols) {
-            if (TIFFReadTile(tiff, tile.get(), left, top, 0, 0) < 0) return false;
+            if (libtiff().read_tile(tiff, tile.get(), left, top, 0, 0) < 0) return false;
             const std::uint32_t cols = std::min(l.tile_cols, l.cols - left);
             for (std::size_t row = 0; row < rows; ++row)
                 for (std::size_t col = 0; col < cols; ++col)
@@ -126,11 +127,11 @@ Tiff open_tiff(const std::filesystem::path& file, const char* mode)
 {
     static std::once_flag once;
     std::call_once(once, [] {
-        TIFFSetErrorHandler(nullptr);
-        TIFFSetWarningHandler(nullptr);
+        libtiff().set_error_handler(nullptr);
+        libtiff().set_warning_handler(nullptr);
         register_geo_tags();
     });
-    return Tiff(TIFFOpen(file.c_str(), mode));
+    return Tiff(libtiff().open(file.c_str(), mode));
 }
 
 bool is_tiff(std::string_view start)
@@ -150,8 +151,8 @@ GreyImage read_grey_tiff(const std::filesystem::path& file, std::uint64_t most)
     GreyImage image{int(found.rows), int(found.cols), !has_white(found) ? 0.0 : found.bits == 8 ? 255.0 : 65535.0, {}};
     image.zero_is_white = has_white(found) && found.photometric == PHOTOMETRIC_MINISWHITE;
     image.is_float32 = is_float(found) && found.bits == 32;
-    const bool tiled = TIFFIsTiled(tiff.get());
-    const tmsize_t piece = tiled ? TIFFTileSize(tiff.get()) : TIFFScanlineSize(tiff.get());
+    const bool tiled = libtiff().is_tiled(tiff.get());
+    const tmsize_t piece = tiled ? libtiff().tile_size(tiff.get()) : libtiff().scanline_size(tiff.get());
     const std::size_t wanted = tiled ? std::size_t(found.tile_rows) * found.tile_cols : found.cols;
     if (piece <= 0 || std::size_t(piece) != wanted * found.pixel_bytes()) throw damaged();
     if (!(tiled ? read_tiles : read_lines)(tiff.get(), found, image.pixels)) throw damaged();

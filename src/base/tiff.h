@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/grey_image.h"
+#include "base/module.h"
 
 #include <tiffio.h>
 
@@ -10,8 +11,41 @@
 
 namespace spawnfield {
 
+/// The interface of the module src/tiff: the functions of libtiff that this library calls, under libtiff's names
+/// without the prefix TIFF. They are in a module because libtiff needs seven other libraries, one for each kind of
+/// compression: loading them would take a tenth of the time of a short command.
+namespace tiff_module {
+struct Functions {
+    static constexpr const char *module = "tiff", *failure = "TIFF files cannot be read or written";
+    decltype(&TIFFOpen) open;
+    decltype(&TIFFClose) close;
+    decltype(&TIFFFlush) flush;
+    decltype(&TIFFSetErrorHandler) set_error_handler;
+    decltype(&TIFFSetWarningHandler) set_warning_handler;
+    decltype(&TIFFSetTagExtender) set_tag_extender;
+    decltype(&TIFFMergeFieldInfo) merge_field_info;
+    decltype(&TIFFGetField) get_field;
+    decltype(&TIFFGetFieldDefaulted) get_field_defaulted;
+    decltype(&TIFFSetField) set_field;
+    decltype(&TIFFReadDirectory) read_directory;
+    decltype(&TIFFWriteDirectory) write_directory;
+    decltype(&TIFFIsCODECConfigured) is_codec_configured;
+    decltype(&TIFFIsTiled) is_tiled;
+    decltype(&TIFFScanlineSize) scanline_size;
+    decltype(&TIFFReadScanline) read_scanline;
+    decltype(&TIFFTileSize) tile_size;
+    decltype(&TIFFReadTile) read_tile;
+    decltype(&TIFFNumberOfTiles) number_of_tiles;
+    decltype(&TIFFGetStrileByteCount) get_strile_byte_count;
+    decltype(&TIFFReadRawTile) read_raw_tile;
+    decltype(&TIFFWriteRawTile) write_raw_tile;
+};
+}  // namespace tiff_module
+
+inline const tiff_module::Functions& libtiff() { return module_functions<tiff_module::Functions>(); }
+
 struct TiffCloser {
-    void operator()(TIFF* tiff) const { TIFFClose(tiff); }
+    void operator()(TIFF* tiff) const { libtiff().close(tiff); }
 };
 using Tiff = std::unique_ptr<TIFF, TiffCloser>;
 

@@ -1,5 +1,6 @@
 #include "base/bits.h"
 #include "base/module.h"
+#include "base/parallel.h"
 #include "collision/box_triangle.h"
 #include "collision/narrow_phase_module.h"
 #include "collision/pose_checker.h"
@@ -264,6 +265,16 @@ CollisionChecker::CollisionChecker(std::shared_ptr<const OccupancyTree> tree, co
     impl->tree = std::move(tree);
     impl->octree = impl->narrow_phase.make_octree(impl->tree->impl().tree);
     impl_ = std::move(impl);
+}
+
+void preload_collisions(int threads)
+{
+    run_aside(threads, [] {
+        try {
+            module_functions<NarrowPhase>();
+        } catch (const std::exception&) {  // is thrown again by whoever needs it
+        }
+    });
 }
 
 CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;

@@ -260,10 +260,10 @@ void set_geo_keys(TIFF* tiff, const std::optional<std::uint16_t>& code)
                                    3076,   0,
                                    1,      metre};  // ProjLinearUnits
     if (code)
-        TIFFSetField(tiff, geo_keys_tag, int(std::size(survey)), survey);
+        libtiff().set_field(tiff, geo_keys_tag, int(std::size(survey)), survey);
     else
-        TIFFSetField(tiff, geo_keys_tag, int(std::size(local)), local);
-    if (!code) TIFFSetField(tiff, geo_text_tag, citation.c_str());
+        libtiff().set_field(tiff, geo_keys_tag, int(std::size(local)), local);
+    if (!code) libtiff().set_field(tiff, geo_text_tag, citation.c_str());
 }
 
 void set_geo_tags(TIFF* tiff, const GridFrame& frame, const std::optional<GeoOrigin>& survey)
@@ -273,10 +273,10 @@ void set_geo_tags(TIFF* tiff, const GridFrame& frame, const std::optional<GeoOri
     const double top = frame.y0 + frame.rows * frame.cell;
     const double tiepoint[] = {0, 0, 0, origin.x + frame.x0 / origin.unit, origin.y + top / origin.unit,
                                0};  // the upper left corner
-    TIFFSetField(tiff, pixel_scale_tag, int(std::size(scale)), scale);
-    TIFFSetField(tiff, tiepoint_tag, int(std::size(tiepoint)), tiepoint);
+    libtiff().set_field(tiff, pixel_scale_tag, int(std::size(scale)), scale);
+    libtiff().set_field(tiff, tiepoint_tag, int(std::size(tiepoint)), tiepoint);
     set_geo_keys(tiff, epsg_code(origin.crs));
-    TIFFSetField(tiff, gdal_no_data_tag, "nan");
+    libtiff().set_field(tiff, gdal_no_data_tag, "nan");
 }
 
 /// Returns the map's origin if the file gets the coordinates of the survey; nothing if it gets the map's own.
@@ -287,19 +287,19 @@ std::optional<GeoOrigin> survey_of(const Map& map, const GeoTiffOptions& options
 
 void set_tags(TIFF* tiff, const GridFrame& frame, std::size_t bands)
 {
-    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, frame.cols);
-    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, frame.rows);
-    TIFFSetField(tiff, TIFFTAG_TILEWIDTH, side);
-    TIFFSetField(tiff, TIFFTAG_TILELENGTH, side);
-    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 32);
-    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, int(bands));
-    TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
-    TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
-    TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_FLOATINGPOINT);
-    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
-    TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_SEPARATE);
+    libtiff().set_field(tiff, TIFFTAG_IMAGEWIDTH, frame.cols);
+    libtiff().set_field(tiff, TIFFTAG_IMAGELENGTH, frame.rows);
+    libtiff().set_field(tiff, TIFFTAG_TILEWIDTH, side);
+    libtiff().set_field(tiff, TIFFTAG_TILELENGTH, side);
+    libtiff().set_field(tiff, TIFFTAG_BITSPERSAMPLE, 32);
+    libtiff().set_field(tiff, TIFFTAG_SAMPLESPERPIXEL, int(bands));
+    libtiff().set_field(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+    libtiff().set_field(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
+    libtiff().set_field(tiff, TIFFTAG_PREDICTOR, PREDICTOR_FLOATINGPOINT);
+    libtiff().set_field(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    libtiff().set_field(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_SEPARATE);
     const std::vector<std::uint16_t> kinds(bands - 1, EXTRASAMPLE_UNSPECIFIED);
-    TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, int(kinds.size()), kinds.data());
+    libtiff().set_field(tiff, TIFFTAG_EXTRASAMPLES, int(kinds.size()), kinds.data());
 }
 
 /// Writes the tiles, row after row. Returns false if one cannot be written.
@@ -318,7 +318,8 @@ bool write_tiles(TIFF* tiff, const TileBands& source, const Tiles& tiles, std::s
             for (std::size_t col = 0; col < streams.size(); ++col) {
                 std::string& bytes = streams[col][band];
                 const auto number = std::uint32_t(band * count + first + col);
-                if (TIFFWriteRawTile(tiff, number, bytes.data(), tmsize_t(bytes.size())) != tmsize_t(bytes.size()))
+                if (libtiff().write_raw_tile(tiff, number, bytes.data(), tmsize_t(bytes.size())) !=
+                    tmsize_t(bytes.size()))
                     return false;
             }
     }
@@ -349,9 +350,10 @@ void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* v
     if (!tiff) throw failed();
     set_tags(tiff.get(), frame, bands.size());
     set_geo_tags(tiff.get(), frame, survey_of(map, options));
-    TIFFSetField(tiff.get(), gdal_metadata_tag, metadata(map, bands, options.layers, verdicts != nullptr).c_str());
+    libtiff().set_field(tiff.get(), gdal_metadata_tag,
+                        metadata(map, bands, options.layers, verdicts != nullptr).c_str());
     if (!write_tiles(tiff.get(), TileBands(map, tiles, verdicts, options, layers), tiles, bands.size(), options) ||
-        TIFFFlush(tiff.get()) != 1)
+        libtiff().flush(tiff.get()) != 1)
         throw failed();
     tiff.reset();
     out.commit();

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 constexpr double mega = 1e6;
+constexpr int rounds_of_short_runs = 20;  // at least, for programs that end after some milliseconds
 
 /// Runs a program. Throws std::runtime_error if it fails; status 3 (fewer spawns than wanted) is no failure.
 ProcessRun checked_run(const std::filesystem::path& program, const std::vector<std::string>& args)
@@ -90,11 +91,11 @@ Query query_by_process(std::vector<std::string> args, const TempFolder& folder, 
     return out;
 }
 
-/// Returns the median time of `info` on a map, s. It is short, so it runs often; the first run is untimed.
+/// Returns the median time of `info` on a map, s; the first run is untimed.
 double info_seconds(const std::filesystem::path& map, int rounds)
 {
     std::vector<double> seconds;
-    for (int round = -1; round < std::max(rounds, 20); ++round) {
+    for (int round = -1; round < rounds; ++round) {
         const ProcessRun run = checked_run(spawnfield_program(), {"info", map.string()});
         if (round >= 0) seconds.push_back(run.seconds);
     }
@@ -149,11 +150,12 @@ void measure_samples(const std::filesystem::path& map, const TargetOptions& opti
     const auto report = [&](double limit, const char* work, double measured, const char* unit, double memory) {
         on_row(at_most(limit, row("hills", work, measured, unit, memory)));
     };
-    const Query few = query_by_process(sample_args(map, options.quick), folder, options.rounds);
+    const int many_rounds = std::max(options.rounds, rounds_of_short_runs);
+    const Query few = query_by_process(sample_args(map, options.quick), folder, many_rounds);
     report(100, "2,000 samples 2.5 m apart, whole process", few.seconds * 1e3, "ms", few.peak_memory);
     report(10, "2,000 samples 2.5 m apart, query alone", few.query * 1e3, "ms", few.peak_memory);
     report(64, "2,000 samples 2.5 m apart, peak memory", few.peak_memory / mega, "MB", few.peak_memory);
-    const Query settled = query_by_process(sample_args(map, options.quick, "settled"), folder, options.rounds);
+    const Query settled = query_by_process(sample_args(map, options.quick, "settled"), folder, many_rounds);
     report(200, "2,000 settled samples 2.5 m apart, whole process", settled.seconds * 1e3, "ms", settled.peak_memory);
     const auto many_at = [&](const char* offset) {
         return query_by_process({"sample", map.string(), "-n", options.quick ? "1000" : "1000000", "--min-distance",
@@ -293,7 +295,8 @@ void measure_programs(const TargetOptions& options, const OnRow& on_row)
     const std::filesystem::path hills = measure_bake("hills", {4, 1000, 200}, options, folder, on_row);
     if (spawnfield_program().empty()) return;
     measure_samples(hills, options, folder, on_row);
-    on_row(at_most(8, row("hills", "info, whole process", info_seconds(hills, options.rounds) * 1e3, "ms", 0)));
+    on_row(at_most(8, row("hills", "info, whole process",
+                          info_seconds(hills, std::max(options.rounds, rounds_of_short_runs)) * 1e3, "ms", 0)));
     measure_race({"hills", "2D raster, step 1 m, offset 0.5 m, whole process", 1, 0.5}, hills, options, folder, on_row);
     std::filesystem::remove_all(hills);
     const std::filesystem::path town = bake_by_process("town", folder, options, 1).map.folder;

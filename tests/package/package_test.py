@@ -24,7 +24,7 @@ FILES = [
     "share/fish/vendor_completions.d/spawnfield.fish", "share/man/man1/spawnfield.1.gz",
     "share/spawnfield/maps/training/scene.yaml",
 ]
-MODULES = ["crs", "drawing", "mesh_reader", "narrow_phase", "sdf"]
+MODULES = ["crs", "drawing", "mesh_reader", "narrow_phase", "sdf", "serve", "tiff"]
 
 
 def check(is_true, text):

@@ -5,7 +5,6 @@
 #include <libqhull_r/libqhull_r.h>
 #include <oneapi/tbb/version.h>
 #include <png.h>
-#include <tiffio.h>
 #include <xxhash.h>
 #include <zlib.h>
 
@@ -41,9 +40,11 @@ std::string dotted(unsigned number)
 
 std::vector<LibraryVersion> loaded_versions()
 {
-    return {{"libpng", png_get_libpng_ver(nullptr)}, {"libtiff", number_in(TIFFGetVersion())},
-            {"oneTBB", TBB_runtime_version()},       {"qhull", number_in(qh_version2)},
-            {"xxHash", dotted(XXH_versionNumber())}, {"zlib", zlibVersion()}};
+    return {{"libpng", png_get_libpng_ver(nullptr)},
+            {"oneTBB", TBB_runtime_version()},
+            {"qhull", number_in(qh_version2)},
+            {"xxHash", dotted(XXH_versionNumber())},
+            {"zlib", zlibVersion()}};
 }
 
 }  // namespace
