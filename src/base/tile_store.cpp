@@ -12,16 +12,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr std::size_t large_file = 64 << 20, page = 4096, most_in_place = 1 << 20, cache_line = 64;  // bytes
-
-/// Requests all bytes of a tile from memory at once, because computing its checksum would wait for one part after the
-/// other. The first byte is read, so that its page is mapped: requests for bytes that are not are dropped. GCC 12 drops
-/// calls of this function if it may not be inlined.
-[[gnu::always_inline]] inline void prefetch(std::string_view tile)
-{
-    static_cast<void>(*static_cast<const volatile char*>(tile.data()));
-    for (std::size_t at = cache_line; at < tile.size(); at += cache_line) __builtin_prefetch(tile.data() + at);
-}
+constexpr std::size_t large_file = 64 << 20, page = 4096, most_in_place = 1 << 20;  // bytes
 
 }  // namespace
 
@@ -87,7 +78,6 @@ std::string_view TileStore::fetch(std::size_t level, std::size_t tile) const
     if (out.empty()) {
         count_in_place(entry.size);
         out = bytes_.view.substr(entry.offset, entry.size);
-        if (opened_->is_sparse) prefetch(out);  // in a row of tiles, the processor does this by itself
     }
     if (XXH64(out.data(), out.size(), 0) != entry.checksum)
         throw FileError(file_, "is damaged (tile " + std::to_string(tile) + " of level " + std::to_string(level) +

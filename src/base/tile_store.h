@@ -50,12 +50,10 @@ public:
     const std::vector<TileLevel>& levels() const { return levels_; }
     std::string_view bytes() const { return bytes_.view; }
 
-    /// From now on, no tile is copied, and all pages are kept: most of them will be needed, many in their order in the
-    /// file.
+    /// From now on, no tile is copied, and all pages are kept: most of them will be needed.
     void expect_all() const
     {
         if (!opened_) return;
-        opened_->is_sparse = false;
         opened_->bytes_to_copy = 0;
         opened_->forgets_pages = false;
     }
@@ -91,7 +89,6 @@ private:
     /// The tiles of a file that were opened.
     struct Opened {
         std::vector<std::unique_ptr<std::atomic<const char*>[]>> tiles;  ///< of each level; nullptr: not opened yet
-        std::atomic<bool> is_sparse{true};                               ///< few tiles, far apart, are expected
         std::atomic<std::size_t> bytes_to_copy;                          ///< limit of further copies
         std::atomic<bool> forgets_pages{false};
         std::atomic<std::size_t> bytes_in_place{0};  ///< opened since pages were returned
