@@ -63,10 +63,10 @@ TEST_CASE("--version prints the version first, and then all libraries with their
         CHECK(std::regex_match(line, std::regex("  [A-Za-z0-9-]+ [0-9]+\\.[0-9.]+( \\(package [^ ]+\\))?")));
         libraries.push_back(line.substr(2, line.find(' ', 2) - 2));
     }
-    CHECK(libraries == Words{"libpng",     "libtiff", "oneTBB",      "qhull",         "xxHash",        "zlib",
-                             "assimp",     "CLI11",   "cpp-httplib", "Eigen",         "FCL",           "libccd",
-                             "libdeflate", "libharu", "libsdformat", "meshoptimizer", "nlohmann-json", "OctoMap",
-                             "OpenCV",     "PROJ",    "tinyxml2",    "urdfdom",       "yaml-cpp"});
+    CHECK(libraries == Words{"libpng",  "oneTBB",      "qhull",    "xxHash",        "zlib",          "assimp",
+                             "CLI11",   "cpp-httplib", "Eigen",    "FCL",           "libccd",        "libdeflate",
+                             "libharu", "libsdformat", "libtiff",  "meshoptimizer", "nlohmann-json", "OctoMap",
+                             "OpenCV",  "PROJ",        "tinyxml2", "urdfdom",       "yaml-cpp"});
     CHECK(text.find(std::string("  zlib ") + zlibVersion() + "\n") != std::string::npos);
 }
 

@@ -52,9 +52,19 @@ private:
     std::unique_ptr<const Impl> impl_;
 };
 
-/// Begins to load FCL on another thread, and returns at once. Call it before a map is read, if a CollisionChecker or a
-/// Judge will be made from it: then this waits less, and the threads of later queries are ready. Does nothing if only
-/// one thread is wanted (`threads`; 0: all cores). If FCL cannot be loaded, the constructor of the checker throws.
-SPAWNFIELD_API void preload_collisions(int threads = 0);
+/// Loads FCL on another thread. Make one before a map is read, if a CollisionChecker or a Judge will be made from it:
+/// then this waits less, and the threads of later queries are ready. Does nothing if only one thread is wanted
+/// (`threads`; 0: all cores). The destructor waits until FCL is loaded. If it cannot be loaded, the constructor of the
+/// checker throws.
+class SPAWNFIELD_API CollisionPreload {
+public:
+    explicit CollisionPreload(int threads = 0);
+    CollisionPreload(CollisionPreload&&) noexcept;
+    ~CollisionPreload();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace spawnfield

@@ -8,6 +8,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <atomic>
@@ -29,15 +30,33 @@ inline int allowed_threads(int threads)
     return std::min(thread_count(threads), int(allowed));
 }
 
-/// Begins to call work() on one of the threads that parallel_for uses, and returns at once; does nothing if there is to
-/// be only one thread. work() must not throw. The thread runs on while the caller goes on, so it has most likely got a
-/// core of its own when the first parallel_for needs it: Linux may start a thread on the core of the one that made it,
-/// and move it only after some milliseconds.
-template <class Work>
-void run_aside(int threads, const Work& work)
-{
-    if (const int count = allowed_threads(threads); count > 1) tbb::task_arena(count).enqueue(work);
-}
+/// A call of work() on one of the threads that parallel_for uses, while the thread that makes this object goes on.
+/// Without a call if there is to be only one thread. work() must not throw. The destructor waits for the call, so that
+/// the process does not end during it.
+///
+/// Linux may start a thread on the core of the one that made it, and move it only after some milliseconds. After the
+/// call, it has most likely got a core of its own, which the first parallel_for needs.
+class CallAside {
+public:
+    template <class Work>
+    CallAside(int threads, const Work& work)
+    {
+        const int count = allowed_threads(threads);
+        if (count < 2) return;
+        arena_.initialize(count);
+        arena_.execute([&] { calls_.run(work); });
+    }
+    CallAside(const CallAside&) = delete;
+    CallAside& operator=(const CallAside&) = delete;
+    ~CallAside()
+    {
+        if (arena_.is_active()) arena_.execute([&] { calls_.wait(); });
+    }
+
+private:
+    tbb::task_arena arena_;
+    tbb::task_group calls_;
+};
 
 /// A value for each thread that asks for one, made when the thread asks first. Any thread may call local().
 template <class T>

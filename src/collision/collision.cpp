@@ -267,15 +267,23 @@ CollisionChecker::CollisionChecker(std::shared_ptr<const OccupancyTree> tree, co
     impl_ = std::move(impl);
 }
 
-void preload_collisions(int threads)
-{
-    run_aside(threads, [] {
-        try {
-            module_functions<NarrowPhase>();
-        } catch (const std::exception&) {  // is thrown again by whoever needs it
-        }
-    });
-}
+struct CollisionPreload::Impl {
+    CallAside loading;
+
+    explicit Impl(int threads)
+        : loading(threads, [] {
+              try {
+                  module_functions<NarrowPhase>();
+              } catch (const std::exception&) {  // is thrown again by whoever needs it
+              }
+          })
+    {
+    }
+};
+
+CollisionPreload::CollisionPreload(int threads) : impl_(std::make_unique<Impl>(threads)) {}
+CollisionPreload::CollisionPreload(CollisionPreload&&) noexcept = default;
+CollisionPreload::~CollisionPreload() = default;
 
 CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;
 CollisionChecker::~CollisionChecker() = default;

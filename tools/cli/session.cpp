@@ -71,8 +71,9 @@ Session open_session(const QueryArgs& args, Summary& summary)
 {
     const JudgeOptions options = judge_options(args, summary.exact_time());
     Session session;
+    std::optional<CollisionPreload> preload;
     if (!args.robot.empty()) {
-        preload_collisions(args.threads);
+        preload.emplace(args.threads);
         session.robot = open_robot(args, args.robot, robot_options(args));
     }
     const Map* const in_memory = args.host->input<Map>(args.map);
