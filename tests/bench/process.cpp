@@ -14,8 +14,8 @@ namespace bench {
 namespace {
 
 /// Starts a program whose standard output is `output`; its standard error is discarded. Returns its process. In
-/// contrast to fork(), this does not copy the page tables of this process, which would take longer than a short
-/// program.
+/// contrast to fork(), this takes the same time however much memory this process has, because no page tables are
+/// copied.
 pid_t start(const std::filesystem::path& program, const std::vector<std::string>& args, int output)
 {
     std::vector<char*> argv = {const_cast<char*>(program.c_str())};
