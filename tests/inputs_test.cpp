@@ -3,6 +3,7 @@
 #include "base/foreign_file.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 #include <spawnfield/poses.h>
 #include <spawnfield/region_file.h>
 #include <spawnfield/robot.h>
@@ -448,6 +449,45 @@ TEST_CASE("folders, devices, sockets and circles of links are refused, and the m
     CHECK(limited_program(arena, "check map --poses p.csv --robot circle").status == 4);
     CHECK(limited_program(arena, "check map --poses p.csv --robot /dev/zero").status == 4);
     close(descriptor);
+}
+
+TEST_CASE("a name that is too long for the system is that of a missing file")
+{
+    const Arena arena;
+    const std::string name(300, 'n');
+    CHECK(!does_exist(name));
+    CHECK(!is_file(name));
+    CHECK(!is_folder(name));
+    CHECK(is_missing(name));
+    fs::create_symlink("circle", arena / "circle");
+    CHECK(!does_exist(arena / "circle"));
+    CHECK(!is_missing(arena / "circle"));
+
+    const auto scene_with = [&](const std::string& mesh) {
+        return arena.write("scene.yaml",
+                           "format: spawnfield-scene/1\nparts: [{name: a, label: terrain, box: [9, 9, 1]}, "
+                           "{name: m, mesh: " +
+                               mesh + "}]\n");
+    };
+    const Scene scene = load_scene(scene_with(name + ".obj"), {.allow_missing = true});
+    REQUIRE(scene.missing.size() == 1);
+    CHECK_THAT(scene.missing[0], Contains("part \"m\": mesh: ") && Contains(name + ".obj is not found: it is ignored"));
+    CHECK_THROWS_WITH(load_scene(arena / "scene.yaml"),
+                      Contains("part \"m\": mesh cannot be used: ") && Contains("File name too long"));
+    CHECK_THROWS_WITH(load_scene(scene_with("circle"), {.allow_missing = true}),
+                      Contains("mesh cannot be used: ") && Contains("Too many levels of symbolic links"));
+
+    const ProgramRun bake = limited_program(arena, "bake " + training_scene + " -o " + name);
+    CHECK(bake.status == 1);
+    CHECK_THAT(bake.err, Contains(name + ": cannot be created: File name too long"));
+    arena.write("p.csv", "x,y,z\n0,3,0.1\n");
+    CHECK_THAT(limited_program(arena, "check map --poses p.csv --robot " + name).err,
+               Contains("does not exist; a robot is"));
+    // These options take a file or a text that names no file.
+    const std::string zeros(300, '0');
+    CHECK(limited_program(arena, "sample map -n 1 --region -2,-2,2,2." + zeros + box).status == 0);
+    CHECK(limited_program(arena, "check map --poses p.csv --with box:1,1,1@1,1,0." + zeros + box).status == 0);
+    CHECK(limited_program(arena, "sample map -n 1 --format sdf --robot-uri model://" + name + box).status == 0);
 }
 
 // ---- kinds of files ----

@@ -8,6 +8,22 @@
 
 namespace spawnfield {
 
+// These follow links and never throw. A path that cannot be followed, because of a circle of links or a folder without
+// permission, leads to nothing, but is not missing: opening it says why. One that is too long for the system is
+// missing.
+
+/// Returns whether a path leads to anything.
+SPAWNFIELD_API bool does_exist(const std::filesystem::path& path);
+
+/// Returns whether a path leads to a regular file.
+SPAWNFIELD_API bool is_file(const std::filesystem::path& path);
+
+/// Returns whether a path leads to a folder.
+SPAWNFIELD_API bool is_folder(const std::filesystem::path& path);
+
+/// Returns whether nothing has this path.
+SPAWNFIELD_API bool is_missing(const std::filesystem::path& path);
+
 /// Throws FileError unless the file exists and is a regular file (links are followed). Call it before opening a file,
 /// because opening a pipe waits for its writer, and reading a device may never end.
 SPAWNFIELD_API void require_file(const std::filesystem::path& file);

@@ -208,10 +208,9 @@ bool may_need_foreign_reader(const std::string& robot)
 {
     if (robot.starts_with("box:")) return false;
     const fs::path file(robot);
-    std::error_code unreachable;
     const std::string extension = lower_case(file.extension().string());
     const bool is_text = extension == ".urdf" || extension == ".yaml" || extension == ".yml";
-    if (!is_text || !fs::is_regular_file(file, unreachable)) return true;
+    if (!is_text || !is_file(file)) return true;
     return read_file(file).find("mesh") != std::string::npos;
 }
 

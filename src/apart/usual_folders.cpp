@@ -1,5 +1,6 @@
 #include "model/model_paths.h"
 
+#include <spawnfield/input_file.h>
 #include <spawnfield/reader_process.h>
 
 #include <algorithm>
@@ -28,9 +29,8 @@ std::vector<fs::path> usual_folders(const fs::path& file, const std::vector<fs::
     const std::vector<fs::path> downloaded = fuel_caches();
     out.insert(out.end(), downloaded.begin(), downloaded.end());
     std::error_code none;
-    std::erase_if(out, [&](const fs::path& folder) { return !fs::is_directory(folder, none); });
-    const fs::path path = fs::weakly_canonical(file, none),
-                   own = fs::is_directory(path, none) ? path : path.parent_path();
+    std::erase_if(out, [&](const fs::path& folder) { return !is_folder(folder); });
+    const fs::path path = fs::weakly_canonical(file, none), own = is_folder(path) ? path : path.parent_path();
     out.push_back(is_inner(own) ? own.parent_path() : own);
     return out;
 }

@@ -17,6 +17,7 @@
 #include <spawnfield/bake.h>
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>
+#include <spawnfield/input_file.h>
 #include <spawnfield/memory.h>
 #include <spawnfield/output_folder.h>
 
@@ -36,7 +37,7 @@ namespace fs = std::filesystem;
 std::string objection_to(const fs::path& folder)
 {
     const fs::path file = folder / "map.yaml";
-    const bool is_map = fs::is_regular_file(file) && read_file(file).starts_with("format: spawnfield-map/");
+    const bool is_map = is_file(file) && read_file(file).starts_with("format: spawnfield-map/");
     return is_map ? "" : "exists and is not a map";
 }
 

@@ -31,6 +31,30 @@ std::string complaint_about(fs::file_type type, const std::error_code& error)
 
 }  // namespace
 
+bool does_exist(const fs::path& path)
+{
+    std::error_code unreachable;
+    return fs::exists(path, unreachable);
+}
+
+bool is_file(const fs::path& path)
+{
+    std::error_code unreachable;
+    return fs::is_regular_file(path, unreachable);
+}
+
+bool is_folder(const fs::path& path)
+{
+    std::error_code unreachable;
+    return fs::is_directory(path, unreachable);
+}
+
+bool is_missing(const fs::path& path)
+{
+    std::error_code error;
+    return fs::status(path, error).type() == fs::file_type::not_found || error == std::errc::filename_too_long;
+}
+
 void require_file(const fs::path& file)
 {
     std::error_code error;

@@ -1,6 +1,7 @@
 #include "base/temporary.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 #include <spawnfield/leftovers.h>
 #include <spawnfield/output_folder.h>
 
@@ -23,7 +24,7 @@ fs::path target_folder(const fs::path& folder)
 
 void refuse_foreign(const fs::path& target, const std::function<std::string(const fs::path&)>& objection)
 {
-    if (!fs::exists(target) || (fs::is_directory(target) && fs::is_empty(target))) return;
+    if (!does_exist(target) || (is_folder(target) && fs::is_empty(target))) return;
     const std::string reason = objection(target);
     if (!reason.empty()) throw OutputError(target.string(), reason + "; choose another name or remove it");
 }
@@ -34,7 +35,7 @@ void link_or_copy(const fs::path& from, const fs::path& to, std::error_code& err
 {
     if (fs::is_symlink(from)) return fs::copy_symlink(from, to, error);
     fs::create_hard_link(from, to, error);
-    if (error && error != std::errc::cross_device_link && fs::is_regular_file(from)) fs::copy_file(from, to, error);
+    if (error && error != std::errc::cross_device_link && is_file(from)) fs::copy_file(from, to, error);
 }
 
 void link_all(const fs::path& from, const fs::path& to)
@@ -64,7 +65,7 @@ bool is_left(const fs::path& path)
 std::vector<fs::path> kept_names(const fs::path& folder, const std::function<bool(const fs::path&)>& keeps)
 {
     std::vector<fs::path> out;
-    if (!keeps || !fs::is_directory(folder)) return out;
+    if (!keeps || !is_folder(folder)) return out;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder))
         if (keeps(entry.path().filename()) && !is_left(entry.path())) out.push_back(entry.path().filename());
     return out;
@@ -106,8 +107,8 @@ OutputFolder::OutputFolder(const Path& target, const std::function<std::string(c
         if (!left.put_back_to.empty() && left.failure.empty())
             notices_.push_back(target_.string() + " was put back: a killed run had left it as " +
                                left.path.filename().string());
-    refuse_foreign(target_, objection_);
     try {
+        refuse_foreign(target_, objection_);
         if (target_.has_parent_path()) fs::create_directories(target_.parent_path());
         Temporary made = make_temporary_folder(target_);
         folder_ = std::move(made.path);
@@ -141,7 +142,7 @@ void OutputFolder::commit(const std::function<bool(const Path& name)>& keeps)
 std::error_code OutputFolder::put_in_place()
 {
     std::error_code error, ignored;
-    if (!fs::exists(target_)) {
+    if (!does_exist(target_)) {
         fs::rename(folder_, target_, error);
         return error;
     }
@@ -181,7 +182,7 @@ void OutputFolder::clear_old(const std::function<bool(const Path& name)>& keeps)
 std::function<std::string(const fs::path&)> holds_only(std::span<const char* const> names, const std::string& kind)
 {
     return [names, kind](const fs::path& folder) -> std::string {
-        if (!fs::is_directory(folder)) return "exists and is not a folder";
+        if (!is_folder(folder)) return "exists and is not a folder";
         std::string foreign;  // the first by name, as the order of entries in a folder is not defined
         for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
             const std::string name = entry.path().filename().string();

@@ -3,6 +3,7 @@
 
 #include <spawnfield/error.h>
 #include <spawnfield/fleet_file.h>
+#include <spawnfield/input_file.h>
 
 #include <algorithm>
 #include <limits>
@@ -104,8 +105,7 @@ FormationPlan formation_in(const YamlMap& map)
 /// Returns the path in the folder, if it is a relative path of something that exists there.
 std::string in_folder(const fs::path& folder, const std::string& text)
 {
-    std::error_code ignored;
-    return fs::path(text).is_relative() && fs::exists(folder / text, ignored) ? (folder / text).string() : text;
+    return fs::path(text).is_relative() && does_exist(folder / text) ? (folder / text).string() : text;
 }
 
 /// Reads a region or several: a text, a box as a list of numbers, or a list of texts.

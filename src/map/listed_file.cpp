@@ -19,7 +19,7 @@ void check_size(const fs::path& folder, const ListedFile& entry)
 {
     const fs::path file = folder / entry.name;
     std::error_code error;
-    if (fs::exists(file, error)) require_file(file);
+    if (does_exist(file)) require_file(file);
     const auto size = fs::file_size(file, error);
     if (error == std::errc::no_such_file_or_directory) throw FileError(file.string(), "is missing; bake the map again");
     if (error) throw FileError(file.string(), "cannot be read: " + error.message());

@@ -9,6 +9,7 @@
 #include "mesh/mesh_file.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 #include <spawnfield/output_file.h>
 #include <spawnfield/terrain.h>
 
@@ -253,10 +254,9 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
 
 MapYaml read_map_yaml(const fs::path& folder)
 {
-    std::error_code unreachable;
-    if (!fs::is_directory(folder, unreachable)) refuse_as_map(folder);
+    if (!is_folder(folder)) refuse_as_map(folder);
     const fs::path file = folder / "map.yaml";
-    if (!fs::is_regular_file(file))
+    if (!is_file(file))
         throw FileError(folder.string(),
                         "is not a map: it has no map.yaml; make a map with `spawnfield bake SCENE -o MAP`");
     const std::string text = read_file(file);

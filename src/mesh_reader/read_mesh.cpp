@@ -11,6 +11,7 @@
 #include "mesh_reader/printing_units.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
@@ -44,11 +45,7 @@ Mat4 matrix_of(const aiMatrix4x4& m)
 /// assimp would wait.
 class RegularFiles : public Assimp::DefaultIOSystem {
 public:
-    bool Exists(const char* file) const override
-    {
-        std::error_code unreachable;
-        return std::filesystem::is_regular_file(file, unreachable);
-    }
+    bool Exists(const char* file) const override { return is_file(file); }
 
     Assimp::IOStream* Open(const char* file, const char* mode) override
     {

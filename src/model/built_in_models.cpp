@@ -3,6 +3,8 @@
 #include "base/module.h"
 #include "base/text.h"
 
+#include <spawnfield/input_file.h>
+
 #include <stdexcept>
 #include <vector>
 
@@ -64,7 +66,7 @@ fs::path built_in_folder() { return library_folder() / "spawnfield-models"; }
 fs::path built_in_file(const std::string& model)
 {
     const fs::path file = built_in_folder() / (model + ".sdf");
-    if (!fs::is_regular_file(file)) throw std::runtime_error(file.string() + " is missing; install spawnfield again");
+    if (!is_file(file)) throw std::runtime_error(file.string() + " is missing; install spawnfield again");
     return file;
 }
 

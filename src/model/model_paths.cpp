@@ -7,6 +7,7 @@
 #include "model/built_in_models.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <cstdlib>
 
@@ -14,19 +15,6 @@ namespace spawnfield {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// These are false for a path that cannot exist, for example a URI that is too long for a name.
-bool does_exist(const fs::path& path)
-{
-    std::error_code impossible;
-    return fs::exists(path, impossible);
-}
-
-bool is_file(const fs::path& path)
-{
-    std::error_code impossible;
-    return fs::is_regular_file(path, impossible);
-}
 
 /// Counts a file, or the files of a model's folder, as opened: libsdformat opens them itself.
 void count_files(const fs::path& found)
@@ -102,8 +90,10 @@ fs::path sdf_file_of(const fs::path& folder)
         if (!name.empty()) return folder / name;
     }
     std::vector<fs::path> files;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    std::error_code unreadable;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, unreadable))
         if (entry.path().extension() == ".sdf") files.push_back(entry.path());
+    if (unreadable) throw FileError(folder.string(), "cannot be read: " + unreadable.message());
     if (files.size() == 1) return files[0];
     if (is_file(folder / "model.sdf")) return folder / "model.sdf";
     throw FileError(
@@ -175,8 +165,7 @@ ModelPaths::Path ModelPaths::find_on_disk(const std::string& uri, const Path& fo
 
 fs::path model_file_of(const fs::path& file_or_folder)
 {
-    std::error_code unreachable;  // for example in a circle of links
-    return fs::is_directory(file_or_folder, unreachable) ? sdf_file_of(file_or_folder) : file_or_folder;
+    return is_folder(file_or_folder) ? sdf_file_of(file_or_folder) : file_or_folder;
 }
 
 }  // namespace spawnfield

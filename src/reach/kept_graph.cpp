@@ -107,7 +107,7 @@ std::optional<ReachGraph> read_kept(const Judge& judge, const ReachOptions& opti
 {
     using Impl = ReachGraph::Impl;
     const fs::path file = kept_graph_file(judge, options);
-    if (!fs::exists(file)) return std::nullopt;
+    if (!does_exist(file)) return std::nullopt;
     try {
         const auto keep = options.keep_ways ? Impl::Keep::Ways : Impl::Keep::Islands;
         return ReachGraph(std::make_shared<const Impl>(judge, options, keep, values_in(read_file(file))));

@@ -4,6 +4,7 @@
 #include "robot/mesh_parts.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <cstdio>
 #include <stdexcept>
@@ -46,7 +47,7 @@ std::filesystem::path mesh_file_of(const CollisionBody& body, ModelPaths& paths,
     } catch (const FileError& error) {  // it is in no folder from which files may be read
         fail(body, file, std::string("<mesh> cannot be used: ") + error.what());
     }
-    if (!std::filesystem::is_regular_file(found))
+    if (!is_file(found))
         fail(body, file,
              "<mesh> " + uri +
                  " was not found beside the file, in --model-path, in GZ_SIM_RESOURCE_PATH, in GAZEBO_MODEL_PATH or "

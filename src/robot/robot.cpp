@@ -191,10 +191,8 @@ Robot read_robot(const std::string& robot, const RobotOptions& options)
 {
     const std::filesystem::path file = robot;
     const std::string extension = lower_case(file.extension().string());
-    std::error_code unreachable;
-    if (std::filesystem::is_directory(file, unreachable)) return read_model_robot(file, options);
-    if (!std::filesystem::exists(file, unreachable) && !unreachable)
-        throw FileError(robot, std::string("does not exist; a robot is ") + known_kinds);
+    if (is_folder(file)) return read_model_robot(file, options);
+    if (is_missing(file)) throw FileError(robot, std::string("does not exist; a robot is ") + known_kinds);
     require_file(file);
     refuse_foreign_robot(file);
     if (extension == ".urdf" || extension == ".sdf" || extension == ".world") return read_model_robot(file, options);

@@ -13,6 +13,7 @@
 #include "scene/shape_slope.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <algorithm>
 #include <cmath>
@@ -120,7 +121,7 @@ private:
                 ignore(body, "<" + geometry.element + "> is not a known geometry");
             if (geometry.kind != Kind::Mesh && geometry.kind != Kind::Heightmap) continue;
             const fs::path found = file_of(body);
-            if (std::error_code impossible; fs::is_regular_file(found, impossible)) {
+            if (is_file(found)) {
                 files_[&body] = found;
                 if (geometry.kind == Kind::Mesh) meshes_.expect(found);
                 continue;

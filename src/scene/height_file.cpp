@@ -10,6 +10,7 @@
 #include "scene/ascii_grid.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <algorithm>
 #include <array>
@@ -68,7 +69,7 @@ std::optional<CoordinateSystem> system_beside(const std::filesystem::path& file,
     constexpr std::uintmax_t most = 65536;  // bytes; a .prj has one or two thousand
     for (const char* extension : {".prj", ".PRJ"}) {
         const std::filesystem::path prj = std::filesystem::path(file).replace_extension(extension);
-        if (!std::filesystem::is_regular_file(prj)) continue;
+        if (!is_file(prj)) continue;
         std::optional<CoordinateSystem> found;
         if (std::filesystem::file_size(prj) <= most) found = coordinate_system(read_file(prj));
         if (!found)

@@ -9,6 +9,7 @@
 #include "scene/pieces.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <algorithm>
 #include <numbers>
@@ -71,7 +72,7 @@ template <class Read>
 void in_part(const YamlMap& map, const std::string& key, const SceneFile& common, Scene& scene, Read read)
 {
     const fs::path file = common.folder / map.text(key);
-    if (common.options.allow_missing && !fs::exists(file)) {
+    if (common.options.allow_missing && is_missing(file)) {
         scene.missing.push_back(map.file() + ": " + map.place() + ": " + key + ": " + file.string() +
                                 " is not found: it is ignored");
         scene.notices.push_back(scene.missing.back());

@@ -4,6 +4,7 @@
 #include "base/text.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <console_bridge/console.h>
 
@@ -130,7 +131,7 @@ private:
     /// brackets. Then this is the folder of the file in SdfPlace.
     fs::path folder_of(const std::string& named) const
     {
-        return named.empty() || named.front() == '<' || !fs::exists(named) ? place_.file.parent_path()
+        return named.empty() || named.front() == '<' || !does_exist(named) ? place_.file.parent_path()
                                                                            : fs::path(named).parent_path();
     }
 

@@ -5,6 +5,7 @@
 #include "session.h"
 #include "streams.h"
 
+#include <spawnfield/input_file.h>
 #include <spawnfield/region_file.h>
 
 #include <filesystem>
@@ -14,7 +15,7 @@ namespace {
 
 Region read_one(const CommonArgs& common, const std::string& option, const std::string& text, MapCells cells)
 {
-    if (is_box(text) && !std::filesystem::exists(text)) {
+    if (is_box(text) && !does_exist(text)) {
         const Bounds box = parse_bounds(option, text, true);
         Region out = box_region(box.min.x(), box.min.y(), box.max.x(), box.max.y(), box.z());
         out.name = text;
@@ -68,8 +69,7 @@ void add_area(CLI::App& command, AreaArgs& args)
 
 std::optional<Bounds> lone_box(const AreaArgs& args)
 {
-    if (args.regions.size() != 1 || !is_box(args.regions[0]) || std::filesystem::exists(args.regions[0]))
-        return std::nullopt;
+    if (args.regions.size() != 1 || !is_box(args.regions[0]) || does_exist(args.regions[0])) return std::nullopt;
     return parse_bounds("--region", args.regions[0], true);
 }
 

@@ -12,6 +12,7 @@
 #include <spawnfield/audit.h>
 #include <spawnfield/bake.h>
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +63,7 @@ AuditOptions audit_options(const AuditArgs& args, const CLI::App& command)
     return out;
 }
 
-bool is_map(const std::string& name) { return fs::is_directory(name) && fs::exists(fs::path(name) / "map.yaml"); }
+bool is_map(const std::string& name) { return is_folder(name) && does_exist(fs::path(name) / "map.yaml"); }
 
 /// Reads the map, or the scene and makes its map in memory. Sets AuditReport::map and AuditReport::missing.
 void open_world(const AuditArgs& args, const CLI::App& command, Summary& summary, AuditReport& report)

@@ -8,6 +8,7 @@
 #include <spawnfield/column.h>
 #include <spawnfield/error.h>
 #include <spawnfield/frames.h>
+#include <spawnfield/input_file.h>
 #include <spawnfield/judge.h>
 #include <spawnfield/place_rules.h>
 
@@ -32,7 +33,7 @@ struct PlacedRobot {
 std::optional<PlacedRobot> parse_robot(const CommonArgs& common, const std::string& text)
 {
     const std::size_t at = text.rfind('@');
-    if (fs::exists(text) || (at == std::string::npos && !text.starts_with("box:"))) return std::nullopt;
+    if (does_exist(text) || (at == std::string::npos && !text.starts_with("box:"))) return std::nullopt;
     const std::size_t comma = at == std::string::npos ? at : text.rfind(',');
     const std::string advice =
         "; write ROBOT@x,y,yaw for a robot at rest, or ROBOT@x,y,z,yaw for a level one (m, and "

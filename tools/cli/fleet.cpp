@@ -6,6 +6,7 @@
 #include "results.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 #include <spawnfield/poses.h>
 #include <spawnfield/robot_inertia.h>
 
@@ -128,7 +129,7 @@ std::vector<Session> open_sessions(const FleetInputs& inputs, const std::vector<
     for (const Member& member : members)
         for_kind(inputs, member.plan, [&] {
             const QueryArgs& args = member.args.query;
-            if (!member.plan.place.empty() && !args.robot.starts_with("box:") && !fs::exists(args.robot))
+            if (!member.plan.place.empty() && !args.robot.starts_with("box:") && !does_exist(args.robot))
                 throw FileError(inputs.fleet.file, member.plan.place + ": robot is " + args.robot +
                                                        ", which does not exist; give a path from the folder of this "
                                                        "file, or box:LX,LY,LZ");
@@ -211,7 +212,7 @@ bool is_launch(const std::string& format) { return format.starts_with("ros") || 
 /// Returns whether a launch file or an SDF world can load the robot's own file.
 bool is_model(const std::string& robot)
 {
-    return robot.ends_with(".urdf") || robot.ends_with(".sdf") || fs::is_regular_file(fs::path(robot) / "model.config");
+    return robot.ends_with(".urdf") || robot.ends_with(".sdf") || is_file(fs::path(robot) / "model.config");
 }
 
 /// The files for simulators of a fleet: one for each kind if kinds have models, because each of them is checked.

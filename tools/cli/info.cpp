@@ -538,19 +538,7 @@ std::string robot_lines(const Json& robot)
 }
 
 /// Returns all bytes of a regular file; nothing for anything else.
-std::string text_of(const fs::path& file)
-{
-    std::error_code unreachable;
-    if (!fs::is_regular_file(file, unreachable)) return "";
-    return read_file(file);
-}
-
-/// Returns whether the path is a folder. A link that leads back to itself is not a folder.
-bool is_folder(const fs::path& path)
-{
-    std::error_code unreachable;
-    return fs::is_directory(path, unreachable);
-}
+std::string text_of(const fs::path& file) { return is_file(file) ? read_file(file) : ""; }
 
 /// Returns whether the text is an SDF model that can move, and not a world or a piece of scenery.
 bool is_moving_model(const std::string& text)
@@ -568,7 +556,7 @@ bool is_robot(const std::string& what, bool has_robot_options, bool has_scene_op
         return false;
     if (what.starts_with("box:") || extension == ".urdf" || extension == ".xacro") return true;
     if (is_folder(what)) {
-        if (!fs::exists(fs::path(what) / "model.config")) return false;
+        if (!does_exist(fs::path(what) / "model.config")) return false;
         return has_robot_options || is_moving_model(text_of(fs::path(what) / "model.sdf"));
     }
     if (extension == ".sdf") return has_robot_options || is_moving_model(text_of(what));
@@ -591,7 +579,7 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
                            [&](const std::string& option) { return command.count(option) > 0; });
     };
     const bool robot_given = is_robot(args.what, has_one_of(robot_options_of_info), has_one_of(scene_option_names));
-    if (is_folder(args.what) && !robot_given && !fs::exists(fs::path(args.what) / "model.config")) {
+    if (is_folder(args.what) && !robot_given && !does_exist(fs::path(args.what) / "model.config")) {
         refuse(command, scene_option_names, "is only for scenes; " + args.what + " is a map");
         refuse(command, robot_options_of_info, "is only for robots; " + args.what + " is a map");
         refuse(command, {"--model-path"}, "is only for scenes and robots; " + args.what + " is a map");

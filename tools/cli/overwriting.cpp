@@ -3,6 +3,7 @@
 #include "streams.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 #include <spawnfield/map.h>
 #include <spawnfield/map_export.h>
 #include <spawnfield/output_file.h>
@@ -37,13 +38,9 @@ std::vector<std::string> values_of(const CLI::App& command, const std::string& o
 }
 
 /// Returns the path in a value: that of husky.yaml@3,4,90deg is husky.yaml.
-std::string path_in(const std::string& value)
-{
-    std::error_code ignored;
-    return fs::exists(value, ignored) ? value : value.substr(0, value.rfind('@'));
-}
+std::string path_in(const std::string& value) { return does_exist(value) ? value : value.substr(0, value.rfind('@')); }
 
-bool is_map_folder(const fs::path& path) { return fs::is_regular_file(path / "map.yaml"); }
+bool is_map_folder(const fs::path& path) { return is_file(path / "map.yaml"); }
 
 /// Returns an option's name for messages; positional ones have no dashes.
 std::string words_for(const std::string& option)
@@ -55,15 +52,14 @@ std::string words_for(const std::string& option)
 std::vector<NamedPath> inputs_of(const CLI::App& command)
 {
     std::vector<NamedPath> out;
-    std::error_code ignored;
     for (const char* const option : input_options) {
         if (command.get_name() == "sample" && std::string(option) == "--pairs") continue;  // a number
         const std::string label = words_for(option);
         for (const std::string& value : values_of(command, option)) {
             const std::string path = path_in(value);
-            if (is_standard(value) || !fs::exists(path, ignored)) continue;
+            if (is_standard(value) || !does_exist(path)) continue;
             out.push_back({label, path, without_links(path)});
-            if (!fs::is_directory(path, ignored) || is_map_folder(path)) continue;
+            if (!is_folder(path) || is_map_folder(path)) continue;
             try {
                 out.push_back({label, path, without_links(scene_file_of(path).string())});  // of a model's folder
             } catch (const std::exception&) {  // it is refused when it is read
@@ -109,7 +105,7 @@ bool is_inside(const fs::path& path, const fs::path& folder)
 /// Returns whether writing the folder removes this file in it. A bake keeps files that do not belong to the map.
 bool is_removed_with(const CLI::App& command, const fs::path& folder, const fs::path& file)
 {
-    if (!fs::is_directory(folder) || !is_inside(file, folder)) return false;
+    if (!is_folder(folder) || !is_inside(file, folder)) return false;
     if (command.get_name() != "bake") return true;
     const auto is_it = [&](const char* name) { return is_same(folder / name, file); };
     return is_it("map.yaml") || std::any_of(map_files.begin(), map_files.end(), is_it);
@@ -119,8 +115,8 @@ void check_pair(const CLI::App& command, const NamedPath& output, const NamedPat
 {
     const std::string start = output.option + " is " + output.value + ", ";
     if (is_same(output.path, input.path))
-        throw ArgumentError(start + "the same " + (fs::is_directory(input.path) ? "folder" : "file") + " as " +
-                            input.option + ", which is read; choose another name for the output");
+        throw ArgumentError(start + "the same " + (is_folder(input.path) ? "folder" : "file") + " as " + input.option +
+                            ", which is read; choose another name for the output");
     if (is_map_folder(input.path) && is_inside(output.path, input.path))
         throw ArgumentError(start + "which lies in the folder " + input.value + " that is read as " + input.option +
                             "; choose a name outside of it");

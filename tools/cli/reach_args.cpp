@@ -4,6 +4,7 @@
 #include "numbers.h"
 #include "spelling.h"
 
+#include <spawnfield/input_file.h>
 #include <spawnfield/kept_graph.h>
 #include <spawnfield/memory.h>
 #include <spawnfield/room.h>
@@ -125,8 +126,7 @@ void notice_if_long(const QueryArgs& query, const ReachOptions& options, const S
     constexpr double many = 100000;
     const Vec3 size = session.map.bounds.max - session.map.bounds.min;
     const double columns = size.x() * size.y() / (*options.step * *options.step);
-    std::error_code unreadable;
-    if (columns < many || std::filesystem::exists(kept_graph_file(*session.judge, options), unreadable)) return;
+    if (columns < many || does_exist(kept_graph_file(*session.judge, options))) return;
     notice(query, "islands: about " + rounded(columns / 1e6) + " million places are examined, " +
                       rounded(*options.step) +
                       " m apart, which may take long; a larger --reach-step takes less time, but misses narrow "
@@ -211,7 +211,7 @@ bool are_islands_quick(const QueryArgs& query, const ReachArgs& args, const Sess
     constexpr double small_map = 5000;
     constexpr std::uint64_t few_elements = 20000;
     const ReachOptions options = reach_options(query, args);
-    if (std::filesystem::exists(kept_graph_file(*session.judge, options))) return true;
+    if (does_exist(kept_graph_file(*session.judge, options))) return true;
     const double step = *with_defaults(options, session.robot).step;
     const Vec3 size = session.map.bounds.max - session.map.bounds.min;
     std::uint64_t elements = 0;

@@ -58,7 +58,7 @@ std::optional<ReaderProcess> reader_for(const CommonArgs& args, const std::strin
     reader->report = [host = args.host, file](const std::vector<fs::path>& files) {
         std::error_code unreachable;
         fs::path folder = fs::weakly_canonical(file, unreachable);
-        if (!fs::is_directory(folder, unreachable)) folder = folder.parent_path();
+        if (!is_folder(folder)) folder = folder.parent_path();
         for (const fs::path& read : files)
             if (!is_in_folder(read, folder)) host->outside_files.insert(read.string());
     };

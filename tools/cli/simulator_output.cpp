@@ -63,8 +63,8 @@ TileGrid parse_tiles(const std::string& text)
 std::string lasting_path(const std::string& option, const std::string& file)
 {
     if (file.find("$(") != std::string::npos) return file;
-    if (!fs::exists(file)) throw FileError(file, "does not exist (" + option + ")");
-    if (!fs::is_directory(file)) require_file(file);
+    if (!does_exist(file)) throw FileError(file, "does not exist (" + option + ")");
+    if (!is_folder(file)) require_file(file);
     return fs::absolute(file).lexically_normal().string();
 }
 
@@ -76,10 +76,10 @@ fs::path model_on_disk(const std::string& uri, const std::vector<fs::path>& mode
     const std::string file = "file://", model = "model://";
     if (!uri.starts_with(model)) {
         const fs::path path = uri.starts_with(file) ? uri.substr(file.size()) : uri;
-        return fs::exists(path) ? path : fs::path();
+        return does_exist(path) ? path : fs::path();
     }
     for (const fs::path& folder : model_paths)
-        if (const fs::path path = folder / uri.substr(model.size()); fs::exists(path)) return path;
+        if (const fs::path path = folder / uri.substr(model.size()); does_exist(path)) return path;
     return {};
 }
 
@@ -92,9 +92,9 @@ std::string first_relative_uri(const std::string& text)
         const std::string uri = start == std::string::npos
                                     ? ""
                                     : text.substr(start, text.find_first_of("< \t\r\n", start) - start);
-        const bool is_file = uri.starts_with("file://");
-        const std::string path = is_file ? uri.substr(7) : uri;
-        if (!path.empty() && path[0] != '/' && (is_file || uri.find("://") == std::string::npos)) return uri;
+        const bool is_file_uri = uri.starts_with("file://");
+        const std::string path = is_file_uri ? uri.substr(7) : uri;
+        if (!path.empty() && path[0] != '/' && (is_file_uri || uri.find("://") == std::string::npos)) return uri;
     }
     return "";
 }
@@ -260,9 +260,9 @@ void SimulatorOutput::notice_joints() const
 std::string SimulatorOutput::own_file() const
 {
     if (!args_.robot_file.empty()) return lasting_path("--robot-file", args_.robot_file);
-    const bool is_file = target_.robot.ends_with(".urdf") || target_.robot.ends_with(".sdf");
-    const bool is_folder = fs::is_regular_file(fs::path(target_.robot) / "model.config");
-    return is_file || is_folder ? lasting_path("--robot", target_.robot) : "";
+    const bool is_model_file = target_.robot.ends_with(".urdf") || target_.robot.ends_with(".sdf");
+    return is_model_file || is_file(fs::path(target_.robot) / "model.config") ? lasting_path("--robot", target_.robot)
+                                                                              : "";
 }
 
 std::string SimulatorOutput::robot_is_neither() const
@@ -277,9 +277,9 @@ void SimulatorOutput::prepare_launch()
     if (!args_.topic.empty() && !args_.robot_file.empty())
         throw ArgumentError("--topic and --robot-file are both given; give one of them");
     if (args_.topic.empty()) launch_.file = own_file();
-    if (fs::is_directory(launch_.file)) launch_.file = scene_file_of(launch_.file).string();  // ROS spawns files
+    if (is_folder(launch_.file)) launch_.file = scene_file_of(launch_.file).string();  // ROS spawns files
     if (is("ros1-launch")) launch_.joints = target_.reading.joints;
-    if (is("ros1-launch") && fs::exists(launch_.file) && model_placement(launch_.file).has_pose)
+    if (is("ros1-launch") && does_exist(launch_.file) && model_placement(launch_.file).has_pose)
         throw ArgumentError("--format ros1-launch: " + launch_.file +
                             " has a <pose> of its own, which gazebo_ros adds to the pose of each robot; remove it");
     if (launch_.topic.empty() && launch_.file.empty())
@@ -300,7 +300,7 @@ void SimulatorOutput::prepare_sdf()
         throw ArgumentError(
             "--format sdf: " + sdf_.uri +
             " has a $(…), which only launch files can contain; give the path of the file, or --robot-uri");
-    if (fs::exists(sdf_.uri))
+    if (does_exist(sdf_.uri))
         if (const std::string frame = model_placement(sdf_.uri).frame; !frame.empty())
             throw ArgumentError("--format sdf: " + sdf_.uri + " has placement_frame=\"" + frame +
                                 "\", so <include> would put that frame, not the model's own, at the pose; remove it");
