@@ -95,7 +95,8 @@ std::vector<Row> run_all(const BenchArgs& args)
         for (const Workbench::Stage& stage : workbench.stages()) {
             if ((setting.name + " " + stage.name).find(args.only) == std::string::npos) continue;
             for (const int threads : stage.parallel ? thread_counts(args) : std::vector<int>{1}) {
-                const std::vector<Row> more = run_in_turns(setting.name, stage, threads, args.quick ? 1 : args.rounds);
+                const int rounds = args.quick ? 1 : args.rounds;
+                const std::vector<Row> more = run_in_turns(setting.name, stage, threads, {rounds, rounds});
                 for (const Row& row : more) std::cout << table_line(row);
                 std::cout << ratios(more) << std::flush;
                 rows.insert(rows.end(), more.begin(), more.end());

@@ -2,6 +2,7 @@
 
 #include "programs.h"
 
+#include <algorithm>
 #include <limits>
 
 using namespace spawnfield;
@@ -114,7 +115,7 @@ bool is_reached(const Target& target, const TargetRow& row, const Row& ours)
            row.over_embree.value_or(0) >= target.over_embree;
 }
 
-TargetRow measure(const Target& target, const Workbench::Stage& stage, int threads, bool judged, int rounds)
+TargetRow measure(const Target& target, const Workbench::Stage& stage, int threads, bool judged, Rounds rounds)
 {
     TargetRow out{target.scene, target.work, threads};
     const std::vector<Row> rows = run_in_turns(target.scene, stage, threads, rounds);
@@ -139,6 +140,7 @@ Extent extent_of(const TargetOptions& options) { return options.quick ? Extent::
 
 void measure_stages(const TargetOptions& options, const OnRow& on_row)
 {
+    const Rounds rounds{options.rounds, options.quick ? options.rounds : std::max(options.rounds, 20)};
     for (const Setting& setting : settings(extent_of(options))) {
         Workbench workbench(setting);
         for (const Workbench::Stage& stage : workbench.stages())
@@ -146,7 +148,7 @@ void measure_stages(const TargetOptions& options, const OnRow& on_row)
                 if (setting.name != target.scene || stage.name != target.stage) continue;
                 for (const int threads : stage.parallel ? options.threads : std::vector<int>{1}) {
                     const bool judged = threads == (target.threads == 0 ? options.threads.back() : target.threads);
-                    on_row(measure(target, stage, threads, judged, options.rounds));
+                    on_row(measure(target, stage, threads, judged, rounds));
                 }
                 for (const std::string& line : workbench.comparisons(setting.name + " " + stage.name))
                     options.on_comparison(line);

@@ -22,9 +22,9 @@ struct TargetRow {
 };
 
 struct TargetOptions {
-    bool quick = false;    ///< small scenes, without targets: only shows that everything works
-    bool largest = false;  ///< also measures the landscape of 10 million triangles
-    int rounds = 5;
+    bool quick = false;                            ///< small scenes, without targets: only shows that everything works
+    bool largest = false;                          ///< also measures the landscape of 10 million triangles
+    int rounds = 5;                                ///< of short work more: see Rounds, and programs.cpp
     std::vector<int> threads = {1, 2};             ///< the last one is the number of cores
     std::function<void(const TargetRow&)> on_row;  ///< is called with each row as soon as it is known
     /// Is called with texts that compare the verdicts of the alternatives with ours.

@@ -217,9 +217,9 @@ std::uint64_t memory_of(const std::function<void()>& run)
 
 }  // namespace
 
-std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds)
+std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& stage, int threads, Rounds rounds)
 {
-    constexpr double long_run = 10;  // s
+    constexpr double long_run = 10, short_rounds = 5;  // s
     std::vector<Workbench::Rival> contestants = {{stage.name, stage.run, true}};
     for (const Workbench::Rival& rival : stage.rivals)
         contestants.push_back({stage.name + " " + rival.name, rival.run, rival.has_same_result});
@@ -228,9 +228,13 @@ std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& 
     for (std::size_t i = 1; i < contestants.size(); ++i) untimed[i] = contestants[i].run(threads);
     reset_peak_memory();
     std::vector<std::vector<Measurement>> measured(contestants.size());
-    for (int round = 0; round < rounds; ++round)
+    double taken = 0;  // s
+    Stopwatch watch;
+    for (int round = 0; round < rounds.least || (round < rounds.most && taken < short_rounds); ++round) {
         for (std::size_t i = 0; i < contestants.size(); ++i)
             if (untimed[i].seconds < long_run) measured[i].push_back(contestants[i].run(threads));
+        taken += watch.lap();
+    }
     std::vector<Row> rows;
     for (std::size_t i = 0; i < contestants.size(); ++i) {
         if (measured[i].empty()) measured[i] = {untimed[i]};

@@ -149,9 +149,15 @@ private:
     std::vector<spawnfield::Pose> poses_;
 };
 
-/// Runs a stage and its rivals (named "stage rival"), each once untimed and then in turns: each of them once in every
-/// round. If a run takes longer than 10 s it is not repeated, and its first time counts. Throws std::runtime_error if
-/// results differ that must be the same.
-std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds);
+/// How often a stage and its rivals run, each of them once in every round: `most` times if that takes less than 5 s,
+/// because few runs of some milliseconds are noise, and at least `least` times.
+struct Rounds {
+    int least, most;
+};
+
+/// Runs a stage and its rivals (named "stage rival"), each once untimed and then in turns. If a run takes longer than
+/// 10 s it is not repeated, and its first time counts. Throws std::runtime_error if results differ that must be the
+/// same.
+std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& stage, int threads, Rounds rounds);
 
 }  // namespace bench
