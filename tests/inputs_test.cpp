@@ -483,6 +483,23 @@ TEST_CASE("a name that is too long for the system is that of a missing file")
     arena.write("p.csv", "x,y,z\n0,3,0.1\n");
     CHECK_THAT(limited_program(arena, "check map --poses p.csv --robot " + name).err,
                Contains("does not exist; a robot is"));
+
+    // What cannot be reached is not missing, and ends a run before its work.
+    const std::string reason = "Too many levels of symbolic links";
+    const auto said = [&](const std::string& arguments) {
+        const ProgramRun run = limited_program(arena, arguments);
+        CHECK(run.status != 0);
+        return run.err;
+    };
+    CHECK(said("bake " + training_scene + " -o circle") == "spawnfield: circle: cannot be created: " + reason + "\n");
+    CHECK_THAT(said("sample map -n 1 --format sdf --robot-file circle" + box), Contains(reason));
+    fs::create_directory(arena / "other");
+    fs::create_symlink("map.yaml", arena / "other/map.yaml");
+    CHECK_THAT(said("info other"), Contains(reason));
+    arena.write("heights.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 4\n");
+    fs::create_symlink("heights.prj", arena / "heights.prj");
+    CHECK_THAT(said("bake heights.asc -o new"), Contains("heights.prj: cannot be reached: " + reason));
+
     // These options take a file or a text that names no file.
     const std::string zeros(300, '0');
     CHECK(limited_program(arena, "sample map -n 1 --region -2,-2,2,2." + zeros + box).status == 0);

@@ -59,7 +59,6 @@ private:
 class SPAWNFIELD_API CollisionPreload {
 public:
     explicit CollisionPreload(int threads = 0);
-    CollisionPreload(CollisionPreload&&) noexcept;
     ~CollisionPreload();
 
 private:

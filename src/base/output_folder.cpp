@@ -1,7 +1,6 @@
 #include "base/temporary.h"
 
 #include <spawnfield/error.h>
-#include <spawnfield/input_file.h>
 #include <spawnfield/leftovers.h>
 #include <spawnfield/output_folder.h>
 
@@ -24,7 +23,7 @@ fs::path target_folder(const fs::path& folder)
 
 void refuse_foreign(const fs::path& target, const std::function<std::string(const fs::path&)>& objection)
 {
-    if (!does_exist(target) || (is_folder(target) && fs::is_empty(target))) return;
+    if (!fs::exists(target) || (fs::is_directory(target) && fs::is_empty(target))) return;
     const std::string reason = objection(target);
     if (!reason.empty()) throw OutputError(target.string(), reason + "; choose another name or remove it");
 }
@@ -35,7 +34,7 @@ void link_or_copy(const fs::path& from, const fs::path& to, std::error_code& err
 {
     if (fs::is_symlink(from)) return fs::copy_symlink(from, to, error);
     fs::create_hard_link(from, to, error);
-    if (error && error != std::errc::cross_device_link && is_file(from)) fs::copy_file(from, to, error);
+    if (error && error != std::errc::cross_device_link && fs::is_regular_file(from)) fs::copy_file(from, to, error);
 }
 
 void link_all(const fs::path& from, const fs::path& to)
@@ -65,7 +64,7 @@ bool is_left(const fs::path& path)
 std::vector<fs::path> kept_names(const fs::path& folder, const std::function<bool(const fs::path&)>& keeps)
 {
     std::vector<fs::path> out;
-    if (!keeps || !is_folder(folder)) return out;
+    if (!keeps || !fs::is_directory(folder)) return out;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder))
         if (keeps(entry.path().filename()) && !is_left(entry.path())) out.push_back(entry.path().filename());
     return out;
@@ -142,7 +141,7 @@ void OutputFolder::commit(const std::function<bool(const Path& name)>& keeps)
 std::error_code OutputFolder::put_in_place()
 {
     std::error_code error, ignored;
-    if (!does_exist(target_)) {
+    if (!fs::exists(target_)) {
         fs::rename(folder_, target_, error);
         return error;
     }
@@ -182,7 +181,7 @@ void OutputFolder::clear_old(const std::function<bool(const Path& name)>& keeps)
 std::function<std::string(const fs::path&)> holds_only(std::span<const char* const> names, const std::string& kind)
 {
     return [names, kind](const fs::path& folder) -> std::string {
-        if (!is_folder(folder)) return "exists and is not a folder";
+        if (!fs::is_directory(folder)) return "exists and is not a folder";
         std::string foreign;  // the first by name, as the order of entries in a folder is not defined
         for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
             const std::string name = entry.path().filename().string();

@@ -282,7 +282,6 @@ struct CollisionPreload::Impl {
 };
 
 CollisionPreload::CollisionPreload(int threads) : impl_(std::make_unique<Impl>(threads)) {}
-CollisionPreload::CollisionPreload(CollisionPreload&&) noexcept = default;
 CollisionPreload::~CollisionPreload() = default;
 
 CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;

@@ -256,7 +256,7 @@ MapYaml read_map_yaml(const fs::path& folder)
 {
     if (!is_folder(folder)) refuse_as_map(folder);
     const fs::path file = folder / "map.yaml";
-    if (!is_file(file))
+    if (is_missing(file))
         throw FileError(folder.string(),
                         "is not a map: it has no map.yaml; make a map with `spawnfield bake SCENE -o MAP`");
     const std::string text = read_file(file);

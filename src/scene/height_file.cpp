@@ -69,7 +69,8 @@ std::optional<CoordinateSystem> system_beside(const std::filesystem::path& file,
     constexpr std::uintmax_t most = 65536;  // bytes; a .prj has one or two thousand
     for (const char* extension : {".prj", ".PRJ"}) {
         const std::filesystem::path prj = std::filesystem::path(file).replace_extension(extension);
-        if (!is_file(prj)) continue;
+        if (is_missing(prj) || is_folder(prj)) continue;
+        require_file(prj);
         std::optional<CoordinateSystem> found;
         if (std::filesystem::file_size(prj) <= most) found = coordinate_system(read_file(prj));
         if (!found)

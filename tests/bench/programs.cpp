@@ -18,9 +18,6 @@ namespace {
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 constexpr double mega = 1e6;
 
-/// Returns how often programs run that end after some milliseconds.
-int rounds_of_short_runs(const TargetOptions& options) { return std::max(options.rounds, 20); }
-
 /// Runs a program. Throws std::runtime_error if it fails; status 3 (fewer spawns than wanted) is no failure.
 ProcessRun checked_run(const std::filesystem::path& program, const std::vector<std::string>& args)
 {
@@ -152,7 +149,7 @@ void measure_samples(const std::filesystem::path& map, const TargetOptions& opti
     const auto report = [&](double limit, const char* work, double measured, const char* unit, double memory) {
         on_row(at_most(limit, row("hills", work, measured, unit, memory)));
     };
-    const int many_rounds = rounds_of_short_runs(options);
+    const int many_rounds = options.rounds_of_short_runs();
     const Query few = query_by_process(sample_args(map, options.quick), folder, many_rounds);
     report(100, "2,000 samples 2.5 m apart, whole process", few.seconds * 1e3, "ms", few.peak_memory);
     report(10, "2,000 samples 2.5 m apart, query alone", few.query * 1e3, "ms", few.peak_memory);
@@ -298,7 +295,7 @@ void measure_programs(const TargetOptions& options, const OnRow& on_row)
     if (spawnfield_program().empty()) return;
     measure_samples(hills, options, folder, on_row);
     on_row(at_most(
-        8, row("hills", "info, whole process", info_seconds(hills, rounds_of_short_runs(options)) * 1e3, "ms", 0)));
+        8, row("hills", "info, whole process", info_seconds(hills, options.rounds_of_short_runs()) * 1e3, "ms", 0)));
     measure_race({"hills", "2D raster, step 1 m, offset 0.5 m, whole process", 1, 0.5}, hills, options, folder, on_row);
     std::filesystem::remove_all(hills);
     const std::filesystem::path town = bake_by_process("town", folder, options, 1).map.folder;

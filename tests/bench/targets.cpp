@@ -2,7 +2,6 @@
 
 #include "programs.h"
 
-#include <algorithm>
 #include <limits>
 
 using namespace spawnfield;
@@ -140,7 +139,7 @@ Extent extent_of(const TargetOptions& options) { return options.quick ? Extent::
 
 void measure_stages(const TargetOptions& options, const OnRow& on_row)
 {
-    const Rounds rounds{options.rounds, options.quick ? options.rounds : std::max(options.rounds, 20)};
+    const Rounds rounds{options.rounds, options.rounds_of_short_runs()};
     for (const Setting& setting : settings(extent_of(options))) {
         Workbench workbench(setting);
         for (const Workbench::Stage& stage : workbench.stages())

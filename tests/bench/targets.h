@@ -2,6 +2,8 @@
 
 #include "workbench.h"
 
+#include <algorithm>
+
 namespace bench {
 
 /// A row of the table of targets for speed and memory.
@@ -22,13 +24,16 @@ struct TargetRow {
 };
 
 struct TargetOptions {
-    bool quick = false;                            ///< small scenes, without targets: only shows that everything works
-    bool largest = false;                          ///< also measures the landscape of 10 million triangles
-    int rounds = 5;                                ///< of short work more: see Rounds, and programs.cpp
+    bool quick = false;    ///< small scenes, without targets: only shows that everything works
+    bool largest = false;  ///< also measures the landscape of 10 million triangles
+    int rounds = 5;
     std::vector<int> threads = {1, 2};             ///< the last one is the number of cores
     std::function<void(const TargetRow&)> on_row;  ///< is called with each row as soon as it is known
     /// Is called with texts that compare the verdicts of the alternatives with ours.
     std::function<void(const std::string&)> on_comparison;
+
+    /// Returns the number of rounds of what takes some milliseconds: few of them are noise.
+    int rounds_of_short_runs() const { return quick ? rounds : std::max(rounds, 20); }
 };
 
 /// Measures every row. Whole programs come first, while this process is still small (see ProcessRun::peak_memory).

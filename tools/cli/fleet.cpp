@@ -129,7 +129,7 @@ std::vector<Session> open_sessions(const FleetInputs& inputs, const std::vector<
     for (const Member& member : members)
         for_kind(inputs, member.plan, [&] {
             const QueryArgs& args = member.args.query;
-            if (!member.plan.place.empty() && !args.robot.starts_with("box:") && !does_exist(args.robot))
+            if (!member.plan.place.empty() && !args.robot.starts_with("box:") && is_missing(args.robot))
                 throw FileError(inputs.fleet.file, member.plan.place + ": robot is " + args.robot +
                                                        ", which does not exist; give a path from the folder of this "
                                                        "file, or box:LX,LY,LZ");

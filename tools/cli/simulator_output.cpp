@@ -63,7 +63,7 @@ TileGrid parse_tiles(const std::string& text)
 std::string lasting_path(const std::string& option, const std::string& file)
 {
     if (file.find("$(") != std::string::npos) return file;
-    if (!does_exist(file)) throw FileError(file, "does not exist (" + option + ")");
+    if (is_missing(file)) throw FileError(file, "does not exist (" + option + ")");
     if (!is_folder(file)) require_file(file);
     return fs::absolute(file).lexically_normal().string();
 }
